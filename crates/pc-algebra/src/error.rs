@@ -220,7 +220,7 @@ pub enum AlgebraError {
         /// The parameter.
         h: String,
     },
-    /// Three axes that do not form a sequence of Euler angles.
+    /// Text that is not a sequence of axes for Euler angles.
     #[error(
         "`{axes}` is not a sequence of Euler angles: three letters x, y, z are needed, neighbours different, as in zxz"
     )]

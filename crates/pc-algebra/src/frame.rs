@@ -4,9 +4,9 @@
 //! quasi-velocities (2). Read `frame` first, then `structure` (the coefficients), and then how they are
 //! found: in `closure`, by (6), if the operators are independent at each point (`followers` names
 //! coordinates that are left out), and in `constant_brackets` if they are independent only over the
-//! constants. `integrability` (Frobenius) and `holonomy` (7) interpret the coefficients; `change` compares
-//! two frames of one system, and `elimination` gives the operators that remain when quasi-velocities are
-//! solved for.
+//! constants. `integrability` (Frobenius) and `holonomy` (7) interpret the coefficients; `change` relates
+//! two frames of one system to each other, and `elimination` gives the operators that remain when
+//! quasi-velocities are solved for.
 
 pub(crate) mod change;
 pub(crate) mod closure;

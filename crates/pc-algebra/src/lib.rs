@@ -76,8 +76,9 @@
 //! [`PlaneRotations`], [`PlaneMotions`], [`RigidMotions`], [`HeisenbergGroup`], and every [`DirectProduct`]. A
 //! group provides exact frames: body velocities [on the left](LieGroup::left_frame), whose structure
 //! coefficients are the constants of the algebra, and spatial velocities [on the right](LieGroup::right_frame),
-//! with the opposite ones. It also provides numbers, for integrators and initial values: [`LieGroup::exp`] and
-//! its derivative, [`LieGroup::log`], [`LieGroup::compose`], [`LieGroup::project`].
+//! whose structure coefficients have the opposite sign. It also provides numbers, for integrators and initial
+//! values: [`LieGroup::exp`] and its derivative, [`LieGroup::log`], [`LieGroup::compose`],
+//! [`LieGroup::project`].
 //!
 //! # Around it
 //!

@@ -1,4 +1,4 @@
-//! Lie algebras by their exact structure constants, and the properties of an algebra as a whole.
+//! Lie algebras, given by exact structure constants, and the properties of an algebra as a whole.
 //!
 //! The c_rs^m are rational numbers, and every property is exact. Read `structure_constants` and `lie_algebra` first;
 //! `series` (centre, derived, lower central), `killing`, `rank` and `invariant_forms` return a `subspace`, a number

@@ -12,8 +12,8 @@
 //! ẋ = b η + b_0 (3), \[X_r, X_s\] = c_rs^m X_m (5), L(t, x, η) = T + U with U minus the potential energy, and
 //! Q_s (8), the force conjugate to η_s.
 //!
-//! [`System::builder`] takes each in the form in which books give it. The frame is given by [velocities in terms of
-//! η](SystemBuilder::kinematics) or as a [`Frame`](SystemBuilder::frame); without either, η = ẋ. The
+//! [`System::builder`] takes each of these in the form in which books give it. The frame is given by [velocities in
+//! terms of η](SystemBuilder::kinematics) or as a [`Frame`](SystemBuilder::frame); without either, η = ẋ. The
 //! [algebra](SystemBuilder::algebra) is needed only where b does not determine it, because its rank is below k. The
 //! Lagrangian is the sum of [T](SystemBuilder::kinetic), [−V](SystemBuilder::potential), [L(t, x,
 //! η)](SystemBuilder::lagrangian), [L(t, x, ẋ)](SystemBuilder::lagrangian_in_velocities) and what each
@@ -28,7 +28,7 @@
 //!
 //! d/dt ∂L/∂η_s = (c_rs^m η_r + c_0s^m) ∂L/∂η_m + X_s L + Q_s (9)
 //!
-//! and solves them for η̇: [`Equations`] are M η̇ = r with M = ∂²L/∂η∂η.
+//! and solves them for η̇: [`Equations`] has the form M η̇ = r with M = ∂²L/∂η∂η.
 //!
 //! ```
 //! use pc_mech::{Graph, LieAlgebra, System};

@@ -1,9 +1,9 @@
 //! Constant structure coefficients of frames whose operators are dependent at each point.
 //!
-//! If rank b < k, b c_rs = [X_r, X_s] has many solutions c_rs at each point, and therefore many solutions
-//! that change from point to point. Solutions that are the same at all points, functions of parameters and
-//! time only, are unique if no combination of the operators with such coefficients vanishes; otherwise
-//! none of them is distinguished as the bracket.
+//! If rank b < k, b c_rs = [X_r, X_s] has many solutions c_rs at each point, and therefore many solutions that
+//! change from point to point. Solutions that are the same at all points, functions of parameters and time
+//! only, are unique if no combination of the operators with such coefficients vanishes; otherwise none of them
+//! can be singled out as the bracket.
 
 use nalgebra::{DMatrix, DVector};
 use pc_expr::{Expr, Graph, Number};

@@ -8,7 +8,8 @@ use crate::frame::structure::{StructureCoefficients, pairs};
 use crate::identity::sample::Neighbourhood;
 use crate::linear_algebra::matrix::Matrix;
 
-/// Quasi-velocities of a frame solved for the others, η_D = A_DI η_I + A_D0; the remaining operators are
+/// A frame after some quasi-velocities have been expressed in terms of the others, η_D = A_DI η_I + A_D0; the
+/// remaining operators are
 ///
 ///   X'_I = X_I + A_DI X_D,   X'_0 = X_0 + A_D0 X_D.
 #[derive(Clone, Debug)]

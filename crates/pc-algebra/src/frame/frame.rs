@@ -21,7 +21,7 @@ pub struct Frame<'g> {
     coordinates: Vec<Expr<'g>>,
     b: Matrix<Expr<'g>>,
     b0: Vec<Expr<'g>>,
-    /// a, where b is defined as a⁻¹.
+    /// The matrix a, if b is defined as a⁻¹.
     a: Option<Matrix<Expr<'g>>>,
 }
 
@@ -300,7 +300,7 @@ pub(crate) struct Movers<'g> {
 }
 
 impl<'g> Movers<'g> {
-    /// The operators X_s, s = 0..k, with X_s f ≠ 0 for some of the functions, or at least not evidently 0.
+    /// The operators X_s, s = 0..k, for which X_s f is not evidently 0 for at least one of the functions f.
     pub(crate) fn of(&self, functions: &[Expr<'g>]) -> BTreeSet<usize> {
         let symbols = self.graph.symbols_of(functions);
         symbols.iter().filter_map(|x| self.by_name.get(&x.symbol_name())).flatten().copied().collect()

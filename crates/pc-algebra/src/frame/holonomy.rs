@@ -8,8 +8,8 @@ use crate::frame::structure::StructureCoefficients;
 /// Whether a quasi-velocity η_m is the velocity of a coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Holonomy<'g> {
-    /// c_rs^m = 0 for all r, s = 0..k: locally η_m = dπ_m/dt (7), on each submanifold of the constraints if n
-    /// > k.
+    /// All c_rs^m = 0, r, s = 0..k: locally η_m = dπ_m/dt (7), on each submanifold of the constraints if n >
+    /// k.
     Holonomic {
         /// The coordinate π_m, if it can be found by elementary means.
         coordinate: Option<Expr<'g>>,

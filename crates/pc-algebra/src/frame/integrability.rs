@@ -33,8 +33,8 @@ impl<'g> Frame<'g> {
     /// only if their commutators are in their span; since \[X_r, X_s\] has no ∂/∂t, this is the span of
     /// X_1..X_k.
     ///
-    /// The rank is that of almost all points, decided as by [`pc_expr::Graph::generic_rank`]; if that knows
-    /// too little about the functions involved, a residual at points of `near` decides. Unlike
+    /// The rank is that of almost all points, decided as by [`pc_expr::Graph::generic_rank`]; if the graph
+    /// knows too little about the functions involved, a residual at points of `near` decides. Unlike
     /// [`structure_coefficients`](Frame::structure_coefficients), this method accepts frames of any rank.
     ///
     /// To ask whether constraints η_α = 0 are holonomic, [restrict](Frame::restricted) the frame to the other

@@ -21,7 +21,7 @@ impl<'g> StructureCoefficients<'g> {
     /// 0 to k − 1.
     ///
     /// Nothing is checked: [`Frame::check`](crate::Frame::check) and
-    /// [`Frame::check_jacobi`](crate::Frame::check_jacobi) say whether a frame has them.
+    /// [`Frame::check_jacobi`](crate::Frame::check_jacobi) check whether they are those of a frame.
     ///
     /// ```
     /// # use pc_algebra::StructureCoefficients;

@@ -78,8 +78,8 @@ impl EulerAngles {
         about_axis(self.axes[0], g[0]) * about_axis(self.axes[1], g[1]) * about_axis(self.axes[2], g[2])
     }
 
-    /// α and β from R, then γ from row j of R_i(−α) R = R_j(β) R_k(γ), which is independent of β: so the
-    /// product is correct for any α if R does not determine α.
+    /// Computes α and β from R, then γ from row j of R_i(−α) R = R_j(β) R_k(γ), which is independent of β: so
+    /// the product is correct for any α if R does not determine α.
     fn angles(&self, r: &Matrix3<f64>) -> Vec<f64> {
         let ([i, j, _], (l, sign)) = (self.axes, self.third());
         let sign = f64::from(sign);
@@ -197,8 +197,8 @@ impl LieGroup for EulerAngles {
         finite(g)
     }
 
-    /// On the right it uses the inverse rotation R_k(−γ) R_j(−β) R_i(−α), whose body velocity is −ω
-    /// for the spatial velocity ω of R.
+    /// On the right the matrix is found from the inverse rotation R_k(−γ) R_j(−β) R_i(−α), whose body
+    /// velocity is −ω for the spatial velocity ω of R.
     fn operators<'g>(&self, side: Side, x: &[Expr<'g>]) -> Matrix<Expr<'g>> {
         let [i, j, k] = self.axes;
         let b = match side {

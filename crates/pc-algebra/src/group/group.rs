@@ -1,4 +1,4 @@
-//! Lie groups in coordinates: numbers for integrators, expressions for frames.
+//! The interface of Lie groups in coordinates: numbers for integrators, expressions for frames.
 
 use nalgebra::DMatrix;
 use pc_expr::{Expr, Graph};
@@ -17,7 +17,7 @@ use crate::frame::frame::{Frame, shape};
 use crate::lie_algebra::lie_algebra::LieAlgebra;
 use crate::linear_algebra::matrix::Matrix;
 
-/// How a velocity of a group is mapped to the algebra.
+/// How a velocity on a group is mapped to the algebra.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// η = g⁻¹ġ: body velocities, the left-invariant operators X_s.
@@ -91,7 +91,7 @@ pub trait LieGroup {
     /// [`AlgebraError::NoNearestElement`] if there is no nearest element.
     fn project(&self, g: &[f64]) -> Result<Vec<f64>, AlgebraError>;
 
-    /// The matrix b of ẋ = b η (3), n × k, at coordinates `x` of length n.
+    /// The n × k matrix b of ẋ = b η (3), at coordinates `x` of length n.
     fn operators<'g>(&self, side: Side, x: &[Expr<'g>]) -> Matrix<Expr<'g>>;
 
     /// Dimension k.

@@ -23,7 +23,7 @@ use crate::linear_algebra::matrix::Matrix;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RigidMotions;
 
-/// ω and v, or the vector part of a quaternion and the position.
+/// The two halves of `x`: ω and v, or the vector part of a quaternion and the position.
 fn halves(x: &[f64]) -> (Vector3<f64>, Vector3<f64>) {
     (vector(x), vector(&x[3..]))
 }

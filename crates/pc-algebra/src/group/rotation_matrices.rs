@@ -86,8 +86,8 @@ impl LieGroup for RotationMatrices {
         largest_difference(g, h)
     }
 
-    /// U diag(1, 1, ±1) Vᵀ for R = U Σ Vᵀ with determinant 1, the rotation nearest in the sum of squares of
-    /// entries (not unique where the two smallest singular values and the sign make it so).
+    /// The matrix U diag(1, 1, ±1) Vᵀ with determinant 1, for R = U Σ Vᵀ: the nearest rotation in the sum of
+    /// squares of entries (not unique where the two smallest singular values and the sign make it so).
     fn project(&self, g: &[f64]) -> Result<Vec<f64>, AlgebraError> {
         let r = matrix(&finite(g)?);
         let no_nearest = || AlgebraError::NoNearestElement { element: g.to_vec() };

@@ -20,7 +20,7 @@ pub(crate) fn stumpff(angle: f64) -> [f64; 6] {
     [c0, c1, c2, c3, c4, c5]
 }
 
-/// Σ (−z)^i/(2i + n)!: after 12 terms the rest is below 2⁻⁵³ of the sum for z ≤ 4, n ≥ 4.
+/// The sum Σ (−z)^i/(2i + n)!: after 12 terms the rest is below 2⁻⁵³ of the sum for z ≤ 4, n ≥ 4.
 fn series(n: u32, z: f64) -> f64 {
     const TERMS: u32 = 12;
     // 1/n! (1 − z/((n+1)(n+2)) (1 − z/((n+3)(n+4)) (…)))

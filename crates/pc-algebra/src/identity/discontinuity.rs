@@ -1,4 +1,4 @@
-//! Surfaces on which functions jump, found by their values on both sides.
+//! Surfaces on which functions jump, found from the values on both sides.
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Program};
 

@@ -105,7 +105,7 @@ fn size<'g>(point: &[(Expr<'g>, f64)], moving: &[Expr<'g>]) -> f64 {
     if size > 0.0 { size } else { 1.0 }
 }
 
-/// Moves a point along a direction in the moving symbols.
+/// Moves a point along a direction in the space of the moving symbols.
 fn shift<'g>(point: &mut [(Expr<'g>, f64)], moving: &[Expr<'g>], along: &[f64], distance: f64) {
     for (symbol, slope) in moving.iter().zip(along) {
         point.iter_mut().filter(|(z, _)| z == symbol).for_each(|(_, value)| *value += distance * slope);

@@ -281,7 +281,7 @@ fn rank(mut rows: Vec<Vec<Weighed>>, columns: usize) -> usize {
     total - rows.len()
 }
 
-/// splitmix64, uniform in (−1, 1).
+/// A generator of numbers uniform in (−1, 1) (splitmix64).
 struct Random(u64);
 
 impl Random {

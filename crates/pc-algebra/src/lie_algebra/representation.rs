@@ -69,7 +69,7 @@ impl Representation {
     /// ρ(X_s), s from 0; n × n.
     ///
     /// # Panics
-    /// If s is not below the dimension of the algebra.
+    /// If s is not less than the dimension of the algebra.
     pub fn matrix(&self, s: usize) -> &Matrix<Number> {
         &self.matrices[s]
     }

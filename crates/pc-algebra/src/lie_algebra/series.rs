@@ -83,7 +83,8 @@ impl LieAlgebra {
     /// Whether [h, h] ⊂ h.
     ///
     /// # Errors
-    /// [`AlgebraError::NotRational`]; [`AlgebraError::Shape`] if h is in a space of another dimension.
+    /// [`AlgebraError::NotRational`]; [`AlgebraError::Shape`] if h lies in a space of another
+    /// dimension.
     pub fn is_subalgebra(&self, h: &Subspace) -> Result<bool, AlgebraError> {
         shape("a vector of the subspace", h.ambient(), self.dim())?;
         Ok(product(&self.exact()?, h, h).is_within(h))
@@ -92,7 +93,8 @@ impl LieAlgebra {
     /// Whether [g, h] ⊂ h.
     ///
     /// # Errors
-    /// [`AlgebraError::NotRational`]; [`AlgebraError::Shape`] if h is in a space of another dimension.
+    /// [`AlgebraError::NotRational`]; [`AlgebraError::Shape`] if h lies in a space of another
+    /// dimension.
     ///
     /// ```
     /// # use pc_algebra::{LieAlgebra, Subspace};

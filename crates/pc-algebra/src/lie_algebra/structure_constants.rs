@@ -34,7 +34,7 @@ pub(crate) fn small(value: &BigRational) -> Option<Number> {
     (num.abs() <= LARGEST && den <= LARGEST).then(|| Number::ratio(num, den))
 }
 
-/// The number nearest to `value`, equal to it if it is small.
+/// The number nearest to `value`, equal to it if its numerator and denominator are small enough.
 pub(crate) fn rounded(value: &BigRational) -> Number {
     small(value).unwrap_or_else(|| Number::Real(value.to_f64().unwrap_or(f64::NAN)))
 }
@@ -48,7 +48,7 @@ pub(crate) fn primitive(vector: &[BigRational]) -> Vec<BigRational> {
     vector.iter().map(|x| x / &scale).collect()
 }
 
-/// The greatest rational of which both are integer multiples, by Euclid's algorithm.
+/// The greatest rational number of which both are integer multiples, by Euclid's algorithm.
 fn common_divisor(a: &BigRational, b: &BigRational) -> BigRational {
     let (mut a, mut b) = (a.abs(), b.abs());
     while !b.is_zero() {

@@ -147,7 +147,7 @@ mod tests {
         }
     }
 
-    /// In another order of multiplication they differ in the last digits.
+    /// In another order of multiplication the coefficients differ in the last digits.
     #[test]
     fn rounded_coefficients_do_not_hide_a_polynomial() {
         let graph = Graph::new();

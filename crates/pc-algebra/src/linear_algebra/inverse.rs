@@ -86,7 +86,7 @@ fn inverse_of_block<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<M
     Some(result)
 }
 
-/// The determinant of a square matrix; `None` for more than four rows, since it is then not a short
+/// The determinant of a square matrix; `None` for more than four rows, since the determinant is then a long
 /// expression.
 pub fn determinant<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Expr<'g>> {
     let all: Vec<usize> = (0..matrix.rows()).collect();
@@ -382,7 +382,8 @@ mod tests {
         }
     }
 
-    /// Small constants are pivots if the row has nothing larger, as with a small unit of a quasi-velocity.
+    /// Small constants are pivots if the row has nothing larger, as happens when a quasi-velocity has a small
+    /// unit.
     #[test]
     fn a_small_unit_is_not_a_rounding_error() {
         let graph = Graph::new();

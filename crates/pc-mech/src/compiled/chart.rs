@@ -35,7 +35,7 @@ pub(crate) struct Chart {
     coordinates: usize,
     parameters: usize,
     entries: Evaluator,
-    /// Rows of the matrix, and whether its columns belong to ẋ.
+    /// The number of rows of the matrix, and whether its columns belong to ẋ.
     size: usize,
     of_velocities: bool,
     room: Vec<f64>,

@@ -66,8 +66,8 @@ impl<'g> Equations<'g> {
 }
 
 impl FirstOrder<'_> {
-    /// Compiles; M⁻¹ is written out if the factorisation takes no more operations than `longest` and the
-    /// equations are linear in the unknowns.
+    /// Compiles the system; M⁻¹ is written out if the factorisation takes no more operations than `longest`
+    /// and the equations are linear in the unknowns.
     ///
     /// # Errors
     /// As for [`Equations::compile`].

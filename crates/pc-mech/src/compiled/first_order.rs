@@ -43,15 +43,15 @@ pub(crate) struct FirstOrder<'g> {
     pub(crate) multipliers: usize,
     /// The number of independent constraints, whose multipliers come first.
     pub(crate) rank: usize,
-    /// M, k × k; without entries for a tree, which is eliminated joint by joint.
+    /// The k × k matrix M; it has no entries for a tree, which is eliminated joint by joint.
     pub(crate) mass: Matrix<Expr<'g>>,
-    /// M w = r of a tree, if M and r are not written out.
+    /// The equations M w = r of a tree, if M and r are not written out.
     pub(crate) tree: Option<Rc<TreeEquations<'g>>>,
     /// The function p, if it differs from M w.
     pub(crate) implicit: Option<Implicit<'g>>,
     /// r, in t and y.
     pub(crate) right: Vec<Expr<'g>>,
-    /// g, in t, y and w, one per component of the state.
+    /// The rates g as functions of t, y and w, one per component of the state.
     pub(crate) rates: Vec<Expr<'g>>,
     /// Symbols by whose powers the unknowns are collected.
     pub(crate) collected_by: Vec<Expr<'g>>,
@@ -72,7 +72,7 @@ pub(crate) struct Implicit<'g> {
 }
 
 impl<'g> FirstOrder<'g> {
-    /// M⁻¹ in the form in which it is applied.
+    /// The inverse M⁻¹ in the form in which it is applied.
     pub(crate) fn factors(&self) -> Factors<'g> {
         match &self.tree {
             Some(tree) => Factors::Tree(Rc::clone(tree)),
@@ -136,7 +136,7 @@ impl<'g> FirstOrder<'g> {
         nonzeros(k, columns)
     }
 
-    /// F = r − M w or r − p, in t, y and w.
+    /// The residual F = r − M w or r − p, as a function of t, y and w.
     pub(crate) fn balance(&self) -> Vec<Expr<'g>> {
         if let Some(tree) = &self.tree {
             return tree.system.in_order(&tree.dynamics.balance(&tree.system.by_link(&self.unknowns)));
@@ -260,7 +260,7 @@ pub(crate) struct Linearised<'a, 'g> {
     /// The rows that contain each symbol, by its name; found when a derivative with respect to a single
     /// symbol is first needed.
     rows_with: OnceCell<HashMap<Option<String>, Vec<usize>>>,
-    /// ∂g/∂w: the nonzero entries of each row with their columns.
+    /// The nonzero entries of each row of ∂g/∂w, with their columns.
     coupling: Vec<SparseColumn<'g>>,
     /// The rows with nonzero entries in each column of ∂g/∂w.
     coupled: Vec<Vec<usize>>,
@@ -347,7 +347,7 @@ impl<'a, 'g> Linearised<'a, 'g> {
         all
     }
 
-    /// ∂ẏ/∂q for each symbol q of `symbols`, column by column.
+    /// The derivatives ∂ẏ/∂q for each symbol q in `symbols`, column by column.
     pub(crate) fn columns(&self, symbols: &[Expr<'g>]) -> Vec<SparseColumn<'g>> {
         symbols.iter().map(|&symbol| self.nonzero_along(&[(symbol, Expr::ONE)])).collect()
     }

@@ -101,7 +101,7 @@ impl Multipliers<'_> {
     }
 }
 
-/// The options with ∂f/∂q if a Jacobian needs it.
+/// The options, extended by ∂f/∂q if a Jacobian needs it.
 fn derived(options: CompileOptions) -> CompileOptions {
     options.parameter_jacobian(options.parameter_jacobian || options.jacobian || options.jvp)
 }
@@ -261,7 +261,7 @@ impl<F: ExternalForce> ForcedMotion<F> {
         self.motion.parameter_jacobian(t, y, &mut self.columns)
     }
 
-    /// ∂f/∂q, column by column.
+    /// The columns of ∂f/∂q, one after the other.
     fn by_forces(&self) -> impl Iterator<Item = &[f64]> {
         self.columns.chunks_exact(self.motion.dim()).skip(self.parameters)
     }

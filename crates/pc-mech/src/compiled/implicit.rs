@@ -1,4 +1,4 @@
-//! Unknowns of nonlinear equations: Newton's method with line search.
+//! Solves nonlinear equations for their unknowns by Newton's method with line search.
 
 use pc_expr::{Backend, Evaluator, ExprError, Pattern, Program};
 
@@ -38,11 +38,11 @@ pub(crate) struct Newton {
     guess: Vec<f64>,
     last: Option<Vec<f64>>,
     here: Iterate,
-    /// F at the trial point.
+    /// The residual F at the trial point.
     ahead: Vec<f64>,
 }
 
-/// w, and the values there; k of each.
+/// The unknowns w and the values at w; k of each.
 #[derive(Clone, Debug)]
 struct Iterate {
     point: Vec<f64>,
@@ -52,7 +52,7 @@ struct Iterate {
     step: Vec<f64>,
     /// |r_s| + |p_s| + Σ_j |M_sj w_j|, the scale of the rounding error of F_s.
     sizes: Vec<f64>,
-    /// 1/√|M_ss|: with these weights the norm of F is independent of the units of w.
+    /// The weights 1/√|M_ss|, which make the norm of F independent of the units of w.
     weights: Vec<f64>,
 }
 
@@ -159,7 +159,7 @@ impl Newton {
     }
 
     /// Takes the first λ from ½^`halvings` downwards that sufficiently reduces F, whose norm was `before`.
-    /// Returns the number of halvings, if there is one.
+    /// Returns the number of halvings, if there is such a λ.
     fn search(
         &mut self,
         halvings: i32,

@@ -50,7 +50,8 @@ impl Multipliers<'_> {
     /// ```
     ///
     /// # Errors
-    /// As [`compile_for`](Multipliers::compile_for); [`ShapeError`](crate::ShapeError) for a guess of another length.
+    /// As [`compile_for`](Multipliers::compile_for); [`ShapeError`](crate::ShapeError) for a guess of the wrong
+    /// length.
     pub fn compile_in_momenta(&self, options: CompileOptions, guess: &[f64]) -> Result<Motion, MechError> {
         let motion = InMomenta::new(self, self.legendre_transform(guess)?, &options)?;
         let momenta = self.equations.system.momentum_symbols();
@@ -160,7 +161,7 @@ impl InMomenta {
         self.jacobian.as_ref().map(|_| &self.full)
     }
 
-    /// Computes the (x, η, z) of (x, y, z) into `state`.
+    /// Writes the (x, η, z) that corresponds to (x, y, z) to `state`.
     ///
     /// # Errors
     /// As [`LegendreTransform::to_quasi_velocities`].

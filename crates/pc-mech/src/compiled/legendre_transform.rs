@@ -12,7 +12,7 @@ use crate::compiled::point::Point;
 use crate::error::{MechError, shape};
 use crate::system::system::System;
 
-/// The compiled conversion between states (x, η) and (x, y) of one system, y_s = ∂L/∂η_s and η_s = ∂H/∂y_s
+/// The compiled conversion between states (x, η) and (x, y) of one system, by y_s = ∂L/∂η_s and η_s = ∂H/∂y_s
 /// (Legendre).
 #[derive(Clone, Debug)]
 pub struct LegendreTransform {

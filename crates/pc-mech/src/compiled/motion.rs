@@ -23,10 +23,12 @@ use crate::error::MechError;
 use crate::system::signals::Signals;
 use crate::system::system::System;
 
-/// The first-order system ẏ = f(t, y) of y = (x, η, z), compiled; owned and independent of the graph.
+/// The compiled first-order system ẏ = f(t, y) for y = (x, η, z), which owns its data and is independent of the
+/// graph.
 #[derive(Clone, Debug)]
 pub struct Motion {
-    /// n coordinates, then k quasi-velocities or momenta, then first-order states.
+    /// The names of the n coordinates, then of the k quasi-velocities or momenta, then of the first-order
+    /// states.
     pub(super) names: Vec<String>,
     pub(super) coordinates: usize,
     pub(super) states: usize,
@@ -411,7 +413,7 @@ impl Motion {
         std::mem::replace(&mut self.kept, integrals.map(Box::new)).map(|kept| *kept)
     }
 
-    /// A number that distinguishes this motion from those of other equations or names: a digest of the names of
+    /// A number that distinguishes this motion from motions with other equations or names: a digest of the names of
     /// states, parameters and constraints, and of the programs of f. It is the same on every run, whatever the values
     /// of the parameters.
     pub fn digest(&self) -> u64 {

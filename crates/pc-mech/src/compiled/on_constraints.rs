@@ -1,4 +1,4 @@
-//! How far a state is off the constraints, and how it is moved onto them.
+//! Measures how far a state is off the constraints, and moves it onto them.
 
 use pc_expr::Failure;
 

@@ -74,19 +74,19 @@ impl CompileOptions {
         CompileOptions { backend, ..self }
     }
 
-    /// Compile ∂f/∂y, which Newton iterations of implicit methods need.
+    /// Whether to compile ∂f/∂y, which Newton iterations of implicit methods need.
     #[must_use]
     pub fn jacobian(self, jacobian: bool) -> CompileOptions {
         CompileOptions { jacobian, ..self }
     }
 
-    /// Compile products (∂f/∂y) v, which take about as long as f itself.
+    /// Whether to compile products (∂f/∂y) v, which take about as long as f itself.
     #[must_use]
     pub fn jvp(self, jvp: bool) -> CompileOptions {
         CompileOptions { jvp, ..self }
     }
 
-    /// Compile ∂f/∂p for the parameters p.
+    /// Whether to compile ∂f/∂p for the parameters p.
     #[must_use]
     pub fn parameter_jacobian(self, parameter_jacobian: bool) -> CompileOptions {
         CompileOptions { parameter_jacobian, ..self }
@@ -98,8 +98,8 @@ impl CompileOptions {
         CompileOptions { elimination, ..self }
     }
 
-    /// Compile ∂f/∂t, which Rosenbrock's methods need; for a motion in momenta under constraints this requires
-    /// the Jacobian as well.
+    /// Whether to compile ∂f/∂t, which Rosenbrock's methods need; for a motion in momenta under constraints
+    /// this requires the Jacobian as well.
     #[must_use]
     pub fn time_derivative(self, time_derivative: bool) -> CompileOptions {
         CompileOptions { time_derivative, ..self }

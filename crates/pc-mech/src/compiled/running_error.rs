@@ -199,7 +199,7 @@ impl Scalar for WithError<'_> {
     }
 }
 
-/// ∂f/∂x_i at `values`, computed in a separate graph with a symbol for each argument.
+/// The derivatives ∂f/∂x_i at `values`, computed in a separate graph with a symbol for each argument.
 fn slopes<'g>(function: Function, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let graph = Graph::new();
     let symbols: Vec<_> = (0..values.len()).map(|i| graph.symbol(&format!("x{i}"))).collect();

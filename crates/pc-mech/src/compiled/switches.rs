@@ -202,9 +202,9 @@ impl Switches {
     /// Writes the observables where the motion slides along a surface at (t, y); false if it does not, or where none of
     /// them changes from one side to the other.
     ///
-    /// They are those of Filippov's combination: for a body held by friction, no acceleration, and the friction that
-    /// holds it. The motion slides if f leads back to the surface from both sides and reaches it within a time as
-    /// short as a rounding error.
+    /// They are those of Filippov's combination: for a body held by friction, zero acceleration and the friction
+    /// force that holds it. The motion slides if f leads back to the surface from both sides and reaches it within a
+    /// time as short as a rounding error.
     pub(crate) fn observe(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> bool {
         if self.observing.is_none() {
             return false;
@@ -328,7 +328,7 @@ impl Switches {
         Ok(())
     }
 
-    /// The central difference quotient of rates as a function of a step.
+    /// The central difference quotient of the rates, which are given as a function of a step.
     fn quotient(
         &mut self,
         step: f64,

@@ -35,8 +35,7 @@ impl<'g> BodyReaction<'g> {
         self.forces.as_ref()?.get(constraint).map(Vec::as_slice)
     }
 
-    /// The torque λ_α n_α, likewise, with 3 components. None if it is not determined, or the body does not
-    /// turn.
+    /// The torque λ_α n_α, likewise, with 3 components. None if it is not determined or the body does not turn.
     pub fn torque(&self, constraint: usize) -> Option<&[Expr<'g>]> {
         self.torques.as_ref()?.get(constraint).map(Vec::as_slice)
     }
@@ -50,7 +49,8 @@ impl<'g> System<'g> {
 }
 
 impl<'g> Multipliers<'g> {
-    /// The reactions on each body, by virtual work: forces F at the points r of the bodies and torques N with
+    /// The reactions on each body, found by virtual work: forces F at the points r of the bodies and torques N
+    /// with
     ///
     ///   Σ (F · ∂ṙ/∂η_s + N · ∂ω/∂η_s) = λ_α C_αs,   s = 1..k.
     ///

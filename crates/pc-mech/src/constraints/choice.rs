@@ -21,14 +21,14 @@ const REGULAR: f64 = 0.5;
 /// graph influence later ones.)
 const PIVOT: f64 = 0.1;
 
-/// C at a state, its rows scaled to length one and its columns divided by the roots of the masses, so that they
-/// do not depend on units.
+/// The matrix C at a state, with its rows scaled to length one and its columns divided by the square roots of
+/// the masses, so that it does not depend on units.
 struct Weighed {
     rows: Vec<Vec<f64>>,
 }
 
 impl<'g> Multipliers<'g> {
-    /// The equations with these quasi-velocities, k − m of them, as the
+    /// The equations with these k − m quasi-velocities as the
     /// [independent](Multipliers::in_independent_velocities) ones.
     ///
     /// # Errors

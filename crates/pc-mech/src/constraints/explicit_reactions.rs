@@ -11,9 +11,9 @@ use crate::error::{ConstraintError, MechError};
 use crate::system::system::System;
 
 impl<'g> Constraint<'g> {
-    /// Whether its reaction does no work during the motion: the power of λ ∂g/∂η_s is λ η_s ∂g/∂η_s, which
-    /// vanishes with g if it is a multiple of g. By Euler's theorem this holds if g is homogeneous in η; for
-    /// an affine g = C η + c_0, if c_0 = 0.
+    /// Whether the reaction of this constraint does no work during the motion: the power of λ ∂g/∂η_s is λ η_s
+    /// ∂g/∂η_s, which vanishes with g if it is a multiple of g. By Euler's theorem this holds if g is
+    /// homogeneous in η, and for an affine g = C η + c_0 if c_0 = 0.
     pub fn is_workless(&self, system: &System<'g>) -> bool {
         if !self.is_nonlinear() {
             return self.coefficients(system).is_ok_and(|(_, drift)| drift.is_zero());

@@ -21,7 +21,7 @@ impl<'g> Multipliers<'g> {
     ///
     /// with X_s = ∂/∂x_s + b_js ∂/∂x_j if the η are velocities. The dependent ones are those that the constraints
     /// determine best at the values `at` of time, coordinates, quasi-velocities and parameters. The equations are
-    /// singular where det C_D = 0, where the constraints themselves need not be. The brackets follow from those of the
+    /// singular where det C_D = 0, even if the constraints themselves are not. The brackets follow from those of the
     /// system, as described at [`Elimination::structure_coefficients`], whatever the rank of the frame.
     ///
     /// # Errors
@@ -104,7 +104,7 @@ impl<'g> Multipliers<'g> {
     /// to be [added](System::with_added_forces) to the forces.
     ///
     /// # Errors
-    /// [`ShapeError`](crate::ShapeError) if the number of structure coefficients does not fit.
+    /// [`ShapeError`](crate::ShapeError) if `structure` is for a different number of quasi-velocities.
     pub fn eliminated(
         &self,
         solved: &[(Expr<'g>, Expr<'g>)],
@@ -142,7 +142,7 @@ impl<'g> Multipliers<'g> {
         })
     }
 
-    /// The equations with a preference: the listed quasi-velocities, k − m of them, are taken as
+    /// The equations with a preference: the k − m listed quasi-velocities are taken as
     /// [independent](Multipliers::in_independent_velocities) wherever they determine the others well.
     #[must_use]
     pub fn preferring(mut self, independent: &[Expr<'g>]) -> Multipliers<'g> {

@@ -49,7 +49,7 @@ use crate::system::system::System;
 pub struct Multipliers<'g> {
     pub(crate) equations: Equations<'g>,
     pub(super) constraints: Vec<Constraint<'g>>,
-    /// g, which is C η + c_0 where it is affine.
+    /// The functions g, equal to C η + c_0 where they are affine.
     pub(super) velocities: Vec<Expr<'g>>,
     /// C = ∂g/∂η, m × k.
     pub(crate) coefficients: Matrix<Expr<'g>>,
@@ -133,7 +133,7 @@ impl<'g> System<'g> {
 }
 
 impl<'g> Multipliers<'g> {
-    /// M, r and the energy of the unconstrained system.
+    /// The equations of the unconstrained system: M, r and the energy.
     pub fn equations(&self) -> &Equations<'g> {
         &self.equations
     }
@@ -286,8 +286,8 @@ impl<'g> Multipliers<'g> {
         LegendreTransform::solving(system, &momenta, &equations, Some(&nearby))
     }
 
-    /// M η = y − p_0 for a quadratic L, p(η) = y for any other: the equations with multipliers for momenta
-    /// that satisfy the constraints.
+    /// The equations M η = y − p_0 for a quadratic L, p(η) = y for any other. They are the equations with
+    /// multipliers for momenta that satisfy the constraints.
     fn free_legendre_equations(&self, momenta: &[Expr<'g>], guess: &[f64]) -> FirstOrder<'g> {
         let (system, graph, eta) = (&self.equations.system, self.graph(), self.quasi_velocities());
         let (mass, right, implicit) = match quadratic(graph, system.lagrangian, eta) {

@@ -20,13 +20,14 @@ const LONG_EQUATION: usize = 160;
 impl<'g> Equations<'g> {
     /// The equations as source code: ẏ of y = (x, η), its Jacobian, the mass matrix, the energy, the integrals and the
     /// outputs, each one straight-line function of (t, y, p) with the parameters p as run-time arguments. If the
-    /// right-hand side is so long that its Jacobian would have some ten thousand operations, it, the mass matrix and
-    /// the energy are computed from a table of operations instead, and the Jacobian by the chain rule.
+    /// right-hand side is so long that its Jacobian would have some ten thousand operations, then the right-hand side,
+    /// the mass matrix and the energy are computed from a table of operations instead, and the Jacobian by the chain
+    /// rule.
     ///
-    /// C comes as a header and a source file, Rust as one file. Both explain their use at their head. The same
-    /// system, built in a new graph, gives the same text. The operations are those of a [`Program`] of the same
-    /// expressions, so that the values are those of the interpreter to the last bit where the mathematical library is
-    /// the same.
+    /// C source consists of a header and a source file, Rust source of one file. Both explain their use at their
+    /// head. The same system, built in a new graph, gives the same text. The operations are those of a [`Program`] of
+    /// the same expressions, so that the values are those of the interpreter to the last bit where the mathematical
+    /// library is the same.
     ///
     /// ```
     /// use pc_mech::{EmitOptions, Graph, Language, System};
@@ -297,7 +298,7 @@ impl<'g> Equations<'g> {
     }
 }
 
-/// Whether the Jacobian of the right-hand side is too long to read.
+/// Whether the Jacobian of the right-hand side would be too long to read.
 fn is_long<'g>(system: &FirstOrder<'g>, solved: &Solved<'g>) -> Result<bool, MechError> {
     let inputs = system.inputs(&[]);
     let operations = Program::new(system.graph, &inputs, &solved.motion)?.code().len();

@@ -40,14 +40,14 @@ impl EmitOptions {
         }
     }
 
-    /// The title of the system, for the first line; without it the name.
+    /// Sets the title of the system, which appears on the first line; the default is the name.
     #[must_use]
     pub fn title(mut self, title: impl Into<String>) -> EmitOptions {
         self.title = title.into();
         self
     }
 
-    /// A remark for the reader, as lines of the comment at the head.
+    /// Adds a remark for the reader to the comment at the head.
     #[must_use]
     pub fn remark(mut self, remark: impl Into<String>) -> EmitOptions {
         self.remark = remark.into();
@@ -62,7 +62,7 @@ impl EmitOptions {
         self
     }
 
-    /// Whether to write the Jacobian of the right-hand side, as by default.
+    /// Whether to write the Jacobian of the right-hand side, which is the default.
     #[must_use]
     pub fn jacobian(mut self, jacobian: bool) -> EmitOptions {
         self.jacobian = jacobian;

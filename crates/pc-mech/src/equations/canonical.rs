@@ -22,8 +22,8 @@ const MOST_COFACTORS: usize = 3;
 ///
 ///   ẏ_s = (c_rs^m ∂H/∂y_r + c_0s^m) y_m − X_s H + Q_s   (10),   ẋ_i = b_i0 + b_is ∂H/∂y_s   (11).
 ///
-/// X_s H being taken at fixed y. With η = ẋ these are Hamilton's equations, in redundant coordinates (17), in
-/// quasi-coordinates (19).
+/// X_s H being taken at fixed y. With η = ẋ these are Hamilton's equations, or, in redundant coordinates, (17)
+/// and, in quasi-coordinates, (19).
 #[derive(Clone, Debug)]
 pub struct Canonical<'g> {
     system: System<'g>,
@@ -189,7 +189,7 @@ impl<'g> Canonical<'g> {
         &self.system
     }
 
-    /// Whether y = ∂L/∂η is solved for η in an expression, as it is where L is quadratic in η.
+    /// Whether the solution η of y = ∂L/∂η is an expression, as it is where L is quadratic in η.
     ///
     /// Otherwise the expressions of these equations contain the symbols η besides (t, x, y), and hold where y = ∂L/∂η;
     /// [compiled](Canonical::compile_for), they solve that by Newton's method.
@@ -211,8 +211,8 @@ impl<'g> Canonical<'g> {
     /// The same equations with a guess η, of length k, from which Newton's method starts to solve y = ∂L/∂η. The
     /// default is η = 0; closed equations need none.
     ///
-    /// It should be in the domain of L, not near its boundary, with M = ∂²L/∂η∂η regular. Where L is not convex in η,
-    /// several η may have the same momenta, and the guess decides which of them is found.
+    /// The guess should be in the domain of L, away from its boundary, and M = ∂²L/∂η∂η should be regular there.
+    /// Where L is not convex in η, several η may have the same momenta, and the guess decides which of them is found.
     ///
     /// # Errors
     /// [`ShapeError`](crate::ShapeError)

@@ -9,7 +9,8 @@ use crate::system::system::System;
 /// The Legendre transform of L.
 #[derive(Clone, Debug)]
 pub(crate) struct Legendre<'g> {
-    /// M = ∂²L/∂η∂η, k × k, in (t, x) if L is quadratic, else in (t, x, η).
+    /// The k × k matrix M = ∂²L/∂η∂η, in terms of (t, x) if L is quadratic, else of (t,
+    /// x, η).
     pub(crate) mass: Matrix<Expr<'g>>,
     /// ∂L/∂η in (t, x, η), length k.
     pub(crate) momenta: Vec<Expr<'g>>,

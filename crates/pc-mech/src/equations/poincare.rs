@@ -15,7 +15,7 @@ pub struct Equations<'g> {
     pub(crate) system: System<'g>,
     velocities: Vec<Expr<'g>>,
     energy: Expr<'g>,
-    /// M and r; for a large tree they are derived on first use.
+    /// The matrices M and r; for a large tree they are derived on first use.
     matrices: OnceCell<Matrices<'g>>,
 }
 
@@ -162,7 +162,7 @@ impl<'g> Equations<'g> {
         &self.matrices().mass
     }
 
-    /// The right-hand side r of M η̇ = r, length k.
+    /// The right-hand side r of M η̇ = r, of length k.
     pub fn right_hand_side(&self) -> &[Expr<'g>] {
         &self.matrices().right
     }
@@ -180,7 +180,7 @@ impl<'g> Equations<'g> {
         self.energy
     }
 
-    /// The same equations with symbols in integrals and outputs replaced, such as those of reactions.
+    /// The same equations with some symbols in integrals and outputs replaced, such as those of reactions.
     #[must_use]
     pub fn with_observed(&self, known: &[(Expr<'g>, Expr<'g>)]) -> Equations<'g> {
         Equations { system: self.system.with_observed(known), ..self.clone() }

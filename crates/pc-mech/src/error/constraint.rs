@@ -6,7 +6,7 @@ use crate::error::lists::{at, listed, quoted};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConstraintError {
-    /// A condition on velocities that is not affine in them.
+    /// A condition on velocities that is not affine in the velocities.
     #[error("the constraint `{constraint}` is not affine in the quasi-velocities")]
     NotAffine {
         /// Its name.

@@ -1,4 +1,4 @@
-//! Why a motion has no rates, or no momenta, at a state.
+//! Errors for a motion that has no rates, or no momenta, at a state.
 
 use pc_expr::readable;
 

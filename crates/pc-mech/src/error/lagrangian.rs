@@ -50,7 +50,7 @@ pub enum LagrangianError {
         /// Names and values of the variables at a jump.
         place: Vec<(String, f64)>,
     },
-    /// A momentum ∂L/∂η jumps, so that its rate is an impulse.
+    /// A momentum ∂L/∂η jumps, so that its rate of change is an impulse.
     #[error(
         "the momentum of `{quasi_velocity}`, the derivative of the Lagrangian, jumps by {} at {}: its rate there is an impulse",
         approximately(*size),

@@ -85,7 +85,7 @@ impl<'g> SystemBuilder<'g> {
         })
     }
 
-    /// ẋ = b η + b_0 (3), with b and b_0 functions of time and coordinates.
+    /// The frame of ẋ = b η + b_0 (3), where b and b_0 are functions of time and coordinates.
     fn frame_of(&self, eta: &[Expr<'g>]) -> Result<Frame<'g>, MechError> {
         let velocities = [eta, &self.velocity_symbols()].concat();
         let (graph, time, x) = (self.graph, self.time, self.coordinates.clone());

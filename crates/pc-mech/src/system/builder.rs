@@ -171,8 +171,8 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Gives the brackets \[X_r, X_s\] = c_rs^m X_m (5) of a stationary frame: needed where b does not determine them
-    /// (rank b < k, or no coordinates), checked against the frame everywhere else.
+    /// Gives the brackets \[X_r, X_s\] = c_rs^m X_m (5) of a stationary frame: they are needed where b does not
+    /// determine them (rank b < k, or no coordinates), and are checked against the frame otherwise.
     #[must_use]
     pub fn algebra(self, algebra: &LieAlgebra) -> Self {
         self.structure(algebra.structure_coefficients())
@@ -186,8 +186,8 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Gives values of symbols near which the system is regular, such as the start of a motion; they are used where an
-    /// identity can only be tested numerically.
+    /// Gives values of symbols near which the system is regular, such as the initial values of a motion; they are used
+    /// where an identity can only be tested numerically.
     #[must_use]
     pub fn near(mut self, values: impl IntoIterator<Item = (Expr<'g>, f64)>) -> Self {
         self.near.centre.extend(values);

@@ -15,7 +15,7 @@ pub trait ExternalForce {
     /// Writes the forces at (t, y) to `q`, one for each quasi-velocity declared, in the order of declaration.
     ///
     /// # Errors
-    /// [`Failure`], recoverable if an integrator should try a smaller step.
+    /// A [`Failure`], which is recoverable if an integrator should try a smaller step.
     fn force(&mut self, t: f64, y: &[f64], q: &mut [f64]) -> Result<(), Failure>;
 
     /// Writes the derivatives ∂q_i/∂y_j of the e forces to `dq[i + j * e]`: every entry.

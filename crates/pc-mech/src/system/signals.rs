@@ -1,4 +1,4 @@
-//! Inputs that are functions of time given by tables.
+//! Inputs given by tables as functions of time.
 
 use std::sync::Arc;
 
@@ -7,8 +7,8 @@ use std::sync::Arc;
 pub enum Interpolation {
     /// By straight lines.
     Linear,
-    /// By the cubic spline with continuous second derivative whose third derivative is continuous at the
-    /// second time and at the last but one, too (C. de Boor, *A Practical Guide to Splines*, ch. IV:
+    /// By the cubic spline with continuous second derivative whose third derivative is also continuous at the
+    /// second and the last but one of the times (C. de Boor, *A Practical Guide to Splines*, ch. IV:
     /// not-a-knot).
     Cubic,
     /// By the last preceding value, even after the last time.

@@ -168,8 +168,8 @@ impl<'g> System<'g> {
         self.signals.iter().copied().chain(self.external.iter().map(|&(_, symbol)| symbol)).collect()
     }
 
-    /// The symbols of the system: time, state, parameters, external forces, and any other in its frame, brackets,
-    /// Lagrangian or forces.
+    /// The symbols of the system: time, state, parameters, external forces, and any others in its frame,
+    /// brackets, Lagrangian or forces.
     pub fn symbols(&self) -> Vec<Expr<'g>> {
         let inputs = self.run_time_inputs();
         let mut symbols: Vec<Expr<'g>> = [self.frame.time()]

@@ -5,7 +5,7 @@ use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
 use crate::error::MechError;
 use crate::system::system::System;
 
-/// The compiled conversion between states (x, η) and (x, ẋ) of one system, ẋ = b η + b_0 (3) and η = a ẋ +
+/// The compiled conversion between states (x, η) and (x, ẋ) of one system, by ẋ = b η + b_0 (3) and η = a ẋ +
 /// a_0 (2).
 ///
 /// Where n > k, velocities that the frame does not allow are replaced by the nearest allowed ones: a = (bᵀb)⁻¹bᵀ.

@@ -5,10 +5,9 @@
 //!
 //!   n = J α + H a + n_0,   f = Hᵀ α + M a + f_0,
 //!
-//! with the moment n about its origin and the acceleration a of the origin. A joint that leaves the component c
-//! free, where the force with the moment n about its origin and the acceleration a of that. A free component c
-//! of a joint, with the force τ, is eliminated like a row of a symmetric matrix Φ = (J H; Hᵀ M): w_c = (τ − p_c
-//! − Σ_{r≠c} Φ_cr A_r)/Φ_cc, Φ ← Φ − Φ_c Φ_cᵀ/Φ_cc, p ← p + Φ_c (τ − p_c)/Φ_cc.
+//! with the moment n about the origin of the link and the acceleration a of this origin. A free component c of
+//! a joint, with the force τ, is eliminated like a row of a symmetric matrix Φ = (J H; Hᵀ M): w_c = (τ − p_c −
+//! Σ_{r≠c} Φ_cr A_r)/Φ_cc, Φ ← Φ − Φ_c Φ_cᵀ/Φ_cc, p ← p + Φ_c (τ − p_c)/Φ_cc.
 //!
 //! This is the elimination M = Lᵀ D L of the mass matrix of the whole tree, in an order that produces no fill-in
 //! (Featherstone 1983; Rodriguez 1987).
@@ -60,7 +59,7 @@ impl<'g> Inertia6<'g> {
         self.map(|r, c, entry| graph.keep(entry + other.0[r][c]))
     }
 
-    /// The matrix with each entry on and below the diagonal replaced, and those above accordingly.
+    /// The symmetric matrix with each entry on and below the diagonal replaced by `put` of it.
     fn map(&self, put: impl Fn(usize, usize, Expr<'g>) -> Expr<'g>) -> Inertia6<'g> {
         let mut mapped = *self;
         for r in 0..6 {
@@ -152,16 +151,16 @@ pub(crate) struct Freedom<'g> {
     /// Φ s
     column: Spatial<'g>,
     inverse: Expr<'g>,
-    /// Φ s/(s·Φ s), zero at its own component.
+    /// The vector Φ s/(s·Φ s), with zero at its own component.
     factors: Spatial<'g>,
-    /// s·Φ s with the size of its terms before elimination, if it may vanish.
+    /// The pivot s·Φ s with the size of its terms before elimination, if it may vanish.
     pub(crate) watched: Option<(Expr<'g>, Expr<'g>)>,
     /// Whether s·Φ s is identically zero: no inertia resists the direction.
     pub(crate) is_massless: bool,
 }
 
-/// s, one of the six components; for a screw, one of the first three plus a multiple of the displacement along
-/// the same axis.
+/// The direction s, one of the six components; for a screw, one of the first three plus a multiple of the
+/// displacement along the same axis.
 #[derive(Clone, Copy, Debug)]
 struct Direction<'g> {
     component: usize,
@@ -229,7 +228,7 @@ impl<'g> Freedom<'g> {
 }
 
 impl<'g> Hinge<'g> {
-    /// The free components, in the order of its quasi-velocities.
+    /// The directions of the free components, in the order of the quasi-velocities of the hinge.
     fn directions(&self) -> Vec<Direction<'g>> {
         let of = |component: usize| Direction { component, pitch: Expr::ZERO };
         match self {

@@ -101,7 +101,7 @@ impl<'g> TreeSystem<'g> {
         self.places.iter().map(|places| places.iter().map(|&place| ordered[place]).collect()).collect()
     }
 
-    /// The system with each expression replaced by one of a graph.
+    /// The system with each expression replaced by `put` of it, in another graph.
     pub(crate) fn map<'n>(&self, graph: &'n Graph, put: impl Fn(Expr<'g>) -> Expr<'n>) -> TreeSystem<'n> {
         TreeSystem {
             tree: self.tree.map(graph, &put),

@@ -231,7 +231,7 @@ impl<'g> Tree<'g> {
         self.links.len() > MANY_LINKS
     }
 
-    /// The tree with each expression replaced by one of a graph.
+    /// The tree with each expression replaced by `put` of it, in another graph.
     pub(crate) fn map<'n>(&self, graph: &'n Graph, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> Tree<'n> {
         let stand = |stand: &Stand<'g>| Stand {
             link: stand.link,
@@ -371,7 +371,7 @@ fn from_root_to_tip(bodies: &[TreeBody<'_>]) -> Result<Vec<(usize, Option<usize>
     Ok(order)
 }
 
-/// A coordinate axis, and the rotation that takes it to a direction.
+/// The index of a coordinate axis, and the rotation that takes this axis to a direction.
 fn aligned<'g>(direction: [f64; 3]) -> Option<(usize, Tensor<'g>)> {
     let length = direction.iter().fold(0.0f64, |length, c| length.hypot(*c));
     if !(length.is_normal()) {

@@ -48,8 +48,8 @@ enum Rank {
     Full,
     /// It is lost at a state that satisfies the constraints: motions cross there.
     Lost,
-    /// It is lost at a state that does not: this is not a motion, since it leaves the surface for another
-    /// sheet of it.
+    /// It is lost at a state that does not satisfy them: this is not a motion, since it leaves the surface for
+    /// another sheet of it.
     Passed,
 }
 

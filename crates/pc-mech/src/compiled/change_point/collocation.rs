@@ -1,4 +1,5 @@
-//! A smooth motion as a polynomial whose rates agree with the field away from its middle.
+//! A smooth motion represented by a polynomial whose rates agree with the field away from the middle of the
+//! interval.
 
 use std::ops::Range;
 
@@ -156,7 +157,7 @@ impl Collocation {
     }
 }
 
-/// The larger of two numbers; NaN if one is (f64::max would lose it).
+/// The larger of two numbers; NaN if one of them is NaN (f64::max would lose it).
 fn larger(a: f64, b: f64) -> f64 {
     if a > b || a.is_nan() { a } else { b }
 }
@@ -180,7 +181,7 @@ mod tests {
     use super::*;
 
     /// ẍ = −x from (1, 0) over half a unit of time: the terms left out, from 4⁻⁸/(15·13⋯3) = 8e-12 on, are far below the
-    /// last terms kept, of 1e-8, which judge the error.
+    /// last terms kept, of 1e-8, by which the error is judged.
     #[test]
     fn an_oscillation_is_followed() {
         let mut flow = |_: f64, y: &mut [f64], rates: &mut [f64]| {

@@ -53,7 +53,7 @@ pub(crate) fn nonzeros<'g>(
     (pattern, values)
 }
 
-/// A matrix of functions of (t, y, p), compiled.
+/// A compiled matrix of functions of (t, y, p).
 #[derive(Clone, Debug)]
 pub(crate) struct Columns {
     pattern: Pattern,

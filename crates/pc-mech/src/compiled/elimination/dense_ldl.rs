@@ -75,8 +75,8 @@ impl DenseLdl {
         }
     }
 
-    /// Factorises with complete pivoting: an indefinite matrix may be regular though a leading minor
-    /// vanishes, as ((0, 1), (1, 0)) is.
+    /// Factorises with complete pivoting: an indefinite matrix such as ((0, 1), (1, 0)) may be regular
+    /// though a leading minor vanishes.
     ///
     /// # Errors
     /// The `failure` of elimination without pivoting, if M is singular.

@@ -13,7 +13,7 @@ use crate::compiled::implicit::Newton;
 use crate::compiled::options::CompileOptions;
 use crate::compiled::point::Point;
 
-/// ẏ = g(t, y, w) and its derivatives, with w from M w = r or p(t, y, w) = r.
+/// The compiled ẏ = g(t, y, w) and its derivatives, with w from M w = r or p(t, y, w) = r.
 #[derive(Clone, Debug)]
 pub(crate) struct Staged {
     dim: usize,
@@ -248,7 +248,7 @@ impl Staged {
     }
 }
 
-/// ∂ẏ/∂q = ∂g/∂q + ∂g/∂w M⁻¹ ∂F/∂q with F = r − M w or r − p, for symbols q.
+/// The derivatives ∂ẏ/∂q = ∂g/∂q + ∂g/∂w M⁻¹ ∂F/∂q with F = r − M w or r − p, for symbols q.
 #[derive(Clone, Debug)]
 struct Stage {
     /// Computes, from (t, (y, w)), the nonzero entries of ∂F/∂q, of ∂g/∂q, and of ∂g/∂w.
@@ -355,7 +355,7 @@ fn whole(blocks: &[usize], balance: &Pattern, rates: &Pattern, coupling: &Patter
     Pattern::from_columns(rates.rows(), (0..rates.columns()).map(column))
 }
 
-/// (∂ẏ/∂y) v = g′ + ∂g/∂w w′ with w′ = M⁻¹ F′, where ′ is the derivative along v.
+/// The product (∂ẏ/∂y) v = g′ + ∂g/∂w w′ with w′ = M⁻¹ F′, where ′ is the derivative along v.
 #[derive(Clone, Debug)]
 struct Product {
     /// F′ from (t, (y, w, v)).

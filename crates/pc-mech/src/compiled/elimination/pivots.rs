@@ -18,8 +18,8 @@ const SQUARE_OF_ROUNDING: f64 = 2.0 * f64::EPSILON * f64::EPSILON;
 /// entry.
 ///
 /// Where all pivots have the same sign, each is compared with its own diagonal entry, independently of units
-/// and of mass ratios. Otherwise they are compared with the largest, as a small one makes the others, and
-/// their rounding errors, large.
+/// and of mass ratios. Otherwise they are compared with the largest, since a small pivot makes the others,
+/// and their rounding errors, large.
 ///
 /// # Errors
 /// [`EvaluationFailure::Pivot`] with the index of the first that vanishes.
@@ -111,8 +111,8 @@ impl PivotPartition {
     }
 }
 
-/// The pivots of M and the sizes they are compared with. Those that depend on parameters alone are computed
-/// once for their values.
+/// The pivots of M and the sizes with which they are compared. Those that depend on parameters alone are
+/// computed once for their values.
 #[derive(Clone, Debug)]
 pub(crate) struct Pivots {
     partition: Arc<PivotPartition>,

@@ -25,15 +25,15 @@ pub(crate) struct Saddle {
     k: usize,
     m: usize,
     rank: usize,
-    /// M, k × k, row by row.
+    /// The k × k matrix M, row by row.
     mass: Vec<f64>,
-    /// C, m × k, then its factors: L below the diagonal of the pivots and U on it and to the right.
+    /// The m × k matrix C, later its factors: L below the diagonal of the pivots and U on it and to the right.
     constraints: Vec<f64>,
     /// The index of the constraint eliminated at each step.
     rows: Vec<usize>,
     /// The index of the unknown eliminated at each step, then the independent ones.
     columns: Vec<usize>,
-    /// G = −C_D⁻¹ C_I, r × (k − r), row by row; D and I in the order of `columns`.
+    /// The r × (k − r) matrix G = −C_D⁻¹ C_I, row by row, with D and I in the order of `columns`.
     dependence: Vec<f64>,
     reduced: DenseLdl,
     full: Pattern,
@@ -55,8 +55,8 @@ impl Saddle {
         Saddle::of_rank(k, m, m)
     }
 
-    /// The matrix of k unknowns and m multipliers, `rank` ≤ k of whose rows are independent. The rows after the
-    /// first `rank` are spare: they replace others only where those are nearly dependent.
+    /// The matrix of k unknowns and m multipliers, where `rank` ≤ k rows of the constraints are independent.
+    /// The rows after the first `rank` are spare: they replace others only where those are nearly dependent.
     pub(crate) fn of_rank(k: usize, m: usize, rank: usize) -> Saddle {
         let free = k - rank;
         Saddle {
@@ -211,8 +211,8 @@ impl Saddle {
         self.mass[self.columns[row] * self.k + self.columns[column]]
     }
 
-    /// M_II + M_ID G + (M_ID G)ᵀ + Gᵀ M_DD G, computes its lower triangle, column by column, and the sizes of its
-    /// diagonal.
+    /// Computes the reduced mass M_II + M_ID G + (M_ID G)ᵀ + Gᵀ M_DD G: its lower triangle, column by column, and
+    /// the sizes of its diagonal.
     fn reduce_mass(&mut self) {
         let (m, free) = (self.rank, self.k - self.rank);
         let (mut moved, mut reduced) =
@@ -299,7 +299,7 @@ impl Saddle {
     }
 }
 
-/// How far the rows of C are from linear dependence.
+/// A measure of how far the rows of C are from linear dependence.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Independence {
     /// The pivots of C in the order of the elimination.
@@ -349,7 +349,7 @@ mod tests {
     use super::*;
     use crate::random::numbers;
 
-    /// M = Nᵀ N + 1 and C, both random, as one symmetric matrix.
+    /// One symmetric matrix made of M = Nᵀ N + 1 and C, both random.
     fn random(k: usize, m: usize, next: &mut impl FnMut() -> f64) -> Vec<Vec<f64>> {
         let n: Vec<f64> = (0..k * k).map(|_| next()).collect();
         let mut whole = vec![vec![0.0; k + m]; k + m];

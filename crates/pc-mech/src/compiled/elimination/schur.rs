@@ -25,7 +25,7 @@ pub(crate) struct Schur {
     /// and its diagonal entries.
     equations: Evaluator,
     values: Vec<f64>,
-    /// The numbers of η̇, of constraints, and of pivots.
+    /// The number of components of η̇, of constraints, and of pivots.
     k: usize,
     m: usize,
     watched: usize,

@@ -43,8 +43,8 @@ impl Solver {
         }
     }
 
-    /// The approximate number of operations to factorise a matrix with this many unknowns and multipliers,
-    /// and to solve with it once.
+    /// The approximate number of operations needed to factorise a matrix with this many unknowns and
+    /// multipliers and to solve with it once.
     pub(crate) fn operations(&self, size: usize, multipliers: usize) -> usize {
         let k = size - multipliers;
         match self {

@@ -1,4 +1,5 @@
-//! First-order systems with M⁻¹ written out: every quantity is one straight-line program of (t, y, p).
+//! First-order systems with M⁻¹ written out: every quantity is computed by one straight-line program from
+//! (t, y, p).
 
 use std::cell::LazyCell;
 use std::sync::Arc;
@@ -215,7 +216,7 @@ impl Unrolled {
         Ok(series)
     }
 
-    /// f for many states at once; `None` if it is interpreted.
+    /// The field f for many states at once; `None` if it is interpreted.
     pub(crate) fn lanes(&mut self, dim: usize, p: &[f64]) -> Option<LaneField> {
         if self.backend != Backend::Fastest {
             return None;

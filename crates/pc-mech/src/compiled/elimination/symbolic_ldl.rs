@@ -30,11 +30,11 @@ pub(crate) struct Watched<'g> {
     /// The index of the unknown that is undetermined there.
     pub(crate) place: usize,
     pub(crate) pivot: Expr<'g>,
-    /// The quantity with which `pivot` is compared, since its rounding error is proportional to it.
+    /// The scale of the rounding error of `pivot`.
     pub(crate) size: Expr<'g>,
 }
 
-/// L is unit lower triangular in the order of elimination, D diagonal; both indexed as M is.
+/// L D Lᵀ with L unit lower triangular in the order of elimination and D diagonal; both are indexed as M is.
 pub(crate) struct Ldl<'g> {
     order: Vec<usize>,
     /// The position of each row in the order of elimination.
@@ -157,9 +157,9 @@ impl<'g> Ldl<'g> {
         })
     }
 
-    /// Eliminates row by row, L_ip = S_ip/S_pp, S_ij ← S_ij − L_ip S_pp L_jp, always a row with the fewest
-    /// entries left, preferably with a symbol as pivot: for example, a wheel before the body that carries it.
-    /// `None` if all remaining diagonal entries are zero.
+    /// Eliminates row by row, L_ip = S_ip/S_pp, S_ij ← S_ij − L_ip S_pp L_jp, always choosing a row with the
+    /// fewest entries left, preferably one with a symbol as pivot: for example, a wheel before the body that
+    /// carries it. `None` if all remaining diagonal entries are zero.
     fn of(graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Option<Ldl<'g>> {
         let k = m.rows();
         let mut schur: Vec<BTreeMap<usize, Expr<'g>>> = (0..k).map(|i| m.nonzero(i).collect()).collect();

@@ -42,11 +42,11 @@ const SMALL: usize = 4096;
 /// The conditions that define a surface, as expressions in t, x, η and parameters.
 #[derive(Debug)]
 pub(crate) struct Conditions<'a, 'g> {
-    /// f(t, x) for the constraints on positions.
+    /// The functions f(t, x) for the constraints on positions.
     pub(crate) positions: &'a [Expr<'g>],
     /// The index of the constraint of each f.
     pub(crate) places: Vec<usize>,
-    /// g(t, x, η) for each constraint; ḟ = g for those on positions.
+    /// The functions g(t, x, η) for all constraints; ḟ = g for those on positions.
     pub(crate) velocities: &'a [Expr<'g>],
     /// Whether every g is affine in η.
     pub(crate) affine: bool,
@@ -94,7 +94,7 @@ pub(crate) struct Surface {
     pub(super) displaced: Vec<f64>,
     room: Room,
     pub(super) spans: Spans,
-    /// The velocities to which the nearest solution is sought.
+    /// The velocities nearest to which a solution is sought.
     pub(super) given: Vec<f64>,
     /// Whether g is affine in η, so that one step leads to the nearest solution.
     pub(crate) affine: bool,
@@ -256,7 +256,7 @@ impl Surface {
         self.weights.iter_mut().zip(weights).for_each(|(weight, mass)| *weight = mass);
     }
 
-    /// Newton's method for f(t, x) = 0 or for g(t, x, η) = 0, which ends after one step where g is affine in
+    /// Solves f(t, x) = 0 or g(t, x, η) = 0 by Newton's method, which ends after one step where g is affine in
     /// η; the matrix stays factorised at the end point.
     ///
     /// Steps are measured by δπ, in the metric given by the diagonal of M, and so independently of the units of

@@ -1,4 +1,4 @@
-//! Conditions that follow from the constraints, checked during a projection.
+//! Conditions that follow from the constraints and are checked during a projection.
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Program};
 

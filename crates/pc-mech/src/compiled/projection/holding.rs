@@ -31,7 +31,7 @@ impl Surface {
     ///
     /// # Errors
     /// [`EvaluationFailure::NoProjection`] if no step leads closer; [`EvaluationFailure::Constraint`] for a
-    /// constraint on held components alone.
+    /// constraint that involves held components alone.
     pub(crate) fn project_holding(
         &mut self,
         (t, y, p): (f64, &mut [f64], &[f64]),

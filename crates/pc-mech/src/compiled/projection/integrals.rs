@@ -29,7 +29,7 @@ pub struct KeptIntegrals {
     pub(super) names: Vec<String>,
     /// The constraints that have to hold at the same time, if there are any, then the integrals.
     values: Measured,
-    /// ∂I_j/∂t, then ∂I_j/∂y_i for each i, one integral after the other.
+    /// Computes ∂I_j/∂t, then ∂I_j/∂y_i for each i, one integral after the other.
     gradients: Evaluator,
     /// Zeros for the constraints, then the values of the integrals at the start.
     levels: Vec<f64>,
@@ -94,8 +94,8 @@ impl<'g> FirstOrder<'g> {
     }
 
     /// Checks that an integral does not jump along the motion, since a value kept across a jump would belong to other
-    /// states. The energy of a Lagrangian that does not jump is tested at the surfaces where it changes pieces; other
-    /// integrals must have no such surfaces.
+    /// states. The energy of a Lagrangian that does not jump is tested at the surfaces where the Lagrangian changes
+    /// from one piece to another; other integrals must have no such surfaces.
     fn check_without_jumps(&self, name: &str, integral: Expr<'g>) -> Result<(), MechError> {
         // A state whose rate is zero changes only at events, which restart the motion with the values after them.
         let flowing = self.state.iter().zip(&self.rates).filter(|(_, rate)| !rate.is_zero());

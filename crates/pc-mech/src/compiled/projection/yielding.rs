@@ -48,7 +48,8 @@ impl Surface {
         Err(EvaluationFailure::NoProjection { unknowns: self.k })
     }
 
-    /// The step for the current g, in units in which masses are one. With H the held indices and F the others,
+    /// The step for the current g, in units in which masses are one. If H are the held indices and F the
+    /// others,
     ///
     ///   N C_H δ_H = −N g,   C_F δ_F = −g − C_H δ_H,
     ///

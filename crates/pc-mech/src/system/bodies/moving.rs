@@ -11,7 +11,7 @@ use crate::system::states::check_no_state;
 pub(crate) struct Share<'g> {
     /// The kinetic energy T in terms of (t, x, η).
     pub(crate) kinetic: Expr<'g>,
-    /// Q_1..Q_k, without those that follow from the force function.
+    /// The forces Q_1..Q_k, without those that follow from the force function.
     pub(crate) forces: Vec<Expr<'g>>,
     /// The force function U(t, x), which is a term of L.
     pub(crate) force_function: Expr<'g>,
@@ -19,7 +19,7 @@ pub(crate) struct Share<'g> {
     pub(crate) in_lagrangian: Vec<bool>,
     /// ṙ
     pub(crate) velocity: Vec<Expr<'g>>,
-    /// ω, if the body turns.
+    /// The angular velocity ω, if the body turns.
     pub(crate) angular_velocity: Option<Vec<Expr<'g>>>,
 }
 
@@ -49,7 +49,7 @@ impl<'a, 'g> Moving<'a, 'g> {
         self.frame.graph().substitute(functions, &self.velocities)
     }
 
-    /// X_s f for each function f of (t, x), s = 0..k.
+    /// The derivatives X_s f of each function f of (t, x), s = 0..k.
     ///
     /// # Errors
     /// [`BodyError::OfVelocities`] if the functions depend on velocities,

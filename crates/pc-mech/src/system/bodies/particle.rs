@@ -9,8 +9,8 @@ use crate::system::bodies::moving::{Moving, Share};
 /// frame.
 ///
 /// Its velocity is ṙ = X_0 r + η_s X_s r, its kinetic energy ½ m |ṙ|². A force F on it, with components along
-/// the same axes, gives Q_s = F · X_s r (8); it may depend on (t, x, η), and on ẋ by the symbols `x'`. A force
-/// that depends on the position alone, is homogeneous in r and has a force function, F · X_s r = X_s U,
+/// the same axes, gives Q_s = F · X_s r (8); it may depend on (t, x, η), and on ẋ through the symbols `x'`. A
+/// force that depends on the position alone, is homogeneous in r and has a force function, F · X_s r = X_s U,
 /// contributes to the energy: U is added to L, and nothing to Q_s. The same holds for a single component with
 /// this property.
 ///
@@ -106,7 +106,7 @@ impl<'g> Particle<'g> {
     }
 
     /// The U(t, x) for which F · X_s r = X_s U, if the force depends on the position alone. If F is homogeneous
-    /// of degree d in r, as constant forces, springs and gravitation are, U = F · r/(d + 1) by Euler's theorem:
+    /// of degree d in r, as are constant forces, springs and gravitation, U = F · r/(d + 1) by Euler's theorem:
     /// where F · X_s r is the same multiple of X_s (F · r) for all s, its 1-form is exact.
     fn force_function(
         &self,

@@ -92,7 +92,7 @@ impl<'g> Inertia<'g> {
 enum Orientation<'g> {
     /// The 3 × 3 matrix R from body axes to axes in space.
     Rotation(Matrix<Expr<'g>>),
-    /// ω in terms of (t, x, η) or ẋ.
+    /// The angular velocity ω in terms of (t, x, η) or ẋ.
     AngularVelocity([Expr<'g>; 3]),
 }
 
@@ -100,10 +100,11 @@ impl<'g> RigidBody<'g> {
     /// A body whose attitude is the 3 × 3 matrix R(t, x) from body axes to axes in space: ω̂ = RᵀṘ, along body axes.
     ///
     /// R may be a multiple of a rotation matrix, such as the |q|² R of a quaternion off the unit sphere: ω̂ is the
-    /// antisymmetric part of RᵀṘ divided by ⅓ tr RᵀR, in which a factor cancels. Among the matrices of Lie groups in
-    /// this crate, those of [`UnitQuaternions`](crate::UnitQuaternions) and [`EulerAngles`](crate::EulerAngles) are
-    /// such multiples everywhere. A matrix of nine coordinates R_ij is a rotation only on SO(3), and gives a long
-    /// expression for the energy: it is better to [give](RigidBody::turning) ω in terms of the quasi-velocities.
+    /// antisymmetric part of RᵀṘ divided by ⅓ tr RᵀR, in which the factor cancels. Among the matrices of Lie groups
+    /// in this crate, those of [`UnitQuaternions`](crate::UnitQuaternions) and [`EulerAngles`](crate::EulerAngles)
+    /// are such multiples everywhere. A matrix of nine coordinates R_ij is a rotation only on SO(3), and gives a
+    /// long expression for the energy: it is better to [give](RigidBody::turning) ω in terms of the
+    /// quasi-velocities.
     pub fn rotating(
         mass: impl Into<Expr<'g>>,
         position: impl IntoIterator<Item = impl Into<Expr<'g>>>,

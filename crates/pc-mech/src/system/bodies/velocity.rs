@@ -18,12 +18,12 @@ impl<'g> BodyVelocity<'g> {
         &self.name
     }
 
-    /// ṙ(t, x, η), along the axes of its position.
+    /// The velocity ṙ(t, x, η), along the axes of the position.
     pub fn velocity(&self) -> &[Expr<'g>] {
         &self.velocity
     }
 
-    /// ω(t, x, η), along the axes of its inertia; none for a particle.
+    /// The angular velocity ω(t, x, η), along the axes of the inertia; none for a particle.
     pub fn angular_velocity(&self) -> Option<&[Expr<'g>]> {
         self.angular_velocity.as_deref()
     }
@@ -39,7 +39,7 @@ impl<'g> BodyVelocity<'g> {
 #[derive(Clone, Debug)]
 pub(crate) struct Bodies<'g> {
     pub(crate) list: Vec<BodyVelocity<'g>>,
-    /// L without the kinetic energy of the bodies.
+    /// The Lagrangian L without the kinetic energy of the bodies.
     pub(crate) rest: Expr<'g>,
 }
 
