@@ -91,7 +91,7 @@ impl Table {
     ///
     /// # Errors
     /// [`TableError`] unless there are as many times as values, at least two of each (one with
-    /// [`Interpolation::Hold`]), all of them finite, and the times increase.
+    /// `Interpolation::Hold`), all of them finite, and the times increase.
     pub fn new(times: Vec<f64>, values: Vec<f64>, interpolation: Interpolation) -> Result<Table, TableError> {
         if times.len() != values.len() {
             return Err(TableError::Lengths { times: times.len(), values: values.len() });
