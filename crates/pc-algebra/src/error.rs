@@ -12,7 +12,7 @@ pub enum AlgebraError {
         what: &'static str,
         /// Its length.
         found: usize,
-        /// The length that fits.
+        /// The required length.
         expected: usize,
     },
     /// A velocity that is not affine in the quasi-velocities.
@@ -36,7 +36,7 @@ pub enum AlgebraError {
         "the definitions of the quasi-velocities cannot be solved for the velocities: their matrix is singular everywhere"
     )]
     SingularDefinitions,
-    /// The operators have no coordinates to act on, so their brackets must be given.
+    /// Operators without coordinates on which to act, so that their brackets must be given.
     #[error(
         "a frame without coordinates does not determine its structure coefficients: the algebra must be given"
     )]
@@ -52,11 +52,10 @@ pub enum AlgebraError {
         rank: usize,
         /// Number of operators.
         operators: usize,
-        /// The first pair without constant coefficients.
+        /// The first pair whose bracket has no constant coefficients.
         pair: (usize, usize),
     },
-    /// Operators with a combination that vanishes everywhere, any multiple of which could be added to a
-    /// bracket.
+    /// Operators with a combination that vanishes everywhere; any multiple of it could be added to a bracket.
     #[error(
         "the frame does not determine its structure coefficients: {}, with rank {rank} of {operators}: the algebra must \
          be given",
@@ -67,7 +66,7 @@ pub enum AlgebraError {
         rank: usize,
         /// Number of operators.
         operators: usize,
-        /// The combination: numbers of operators, from 1, with the texts of their coefficients, which are functions of
+        /// The combination: numbers of operators, from 1, each with its coefficient as text, which are functions of
         /// parameters and time. Empty if it was not found.
         combination: Vec<(usize, String)>,
     },
@@ -115,7 +114,7 @@ pub enum AlgebraError {
     Jacobi {
         /// The three operators.
         triple: (usize, usize, usize),
-        /// The operator along which the defect was found.
+        /// The index of the operator along which the defect was found.
         component: usize,
         /// The component of \[\[X_r,X_s\],X_u\] + cyclic.
         defect: String,
@@ -136,7 +135,7 @@ pub enum AlgebraError {
         /// The known names.
         known: Vec<&'static str>,
     },
-    /// A structure constant that is a rounded real, where exact arithmetic is needed.
+    /// A structure constant that is a rounded real number, where exact arithmetic is needed.
     #[error("c_{r}{s}^{m} = {value} is not a rational number, so nothing exact can be said of the algebra")]
     NotRational {
         /// First lower index.
@@ -160,7 +159,7 @@ pub enum AlgebraError {
         /// The constant.
         value: String,
     },
-    /// An entry that is a rounded real where exact arithmetic is needed.
+    /// An entry that is a rounded real number, where exact arithmetic is needed.
     #[error("entry ({row}, {column}) of {what} is {value}, which is not a rational number")]
     IrrationalEntry {
         /// The matrix.
@@ -189,7 +188,7 @@ pub enum AlgebraError {
         /// Its column, from 1.
         column: usize,
     },
-    /// Matrices that are not a basis.
+    /// Matrices that are linearly dependent, and so are not a basis.
     #[error("matrix number {number} is a combination of those before it")]
     DependentMatrices {
         /// The number of the first matrix that depends on the preceding ones, from 1.
@@ -214,14 +213,14 @@ pub enum AlgebraError {
     /// A parameter that the Bianchi type does not allow.
     #[error("Bianchi type {kind} has a parameter h {range}, not {h}")]
     BianchiParameter {
-        /// VI or VII.
+        /// The type, VI or VII.
         kind: &'static str,
         /// The range it allows.
         range: &'static str,
         /// The parameter.
         h: String,
     },
-    /// Three axes that do not form a sequence of Euler angles.
+    /// Text that is not a sequence of axes for Euler angles.
     #[error(
         "`{axes}` is not a sequence of Euler angles: three letters x, y, z are needed, neighbours different, as in zxz"
     )]
@@ -229,7 +228,7 @@ pub enum AlgebraError {
         /// The text.
         axes: String,
     },
-    /// Numbers without a nearest element of the group.
+    /// Coordinates for which the group has no nearest element.
     #[error("{element:?} has no nearest element of the group")]
     NoNearestElement {
         /// The numbers.
@@ -238,8 +237,8 @@ pub enum AlgebraError {
     /// Frames with different coordinates or times.
     #[error("the two frames do not have the same coordinates and time")]
     DifferentSpaces,
-    /// Operators that are linearly dependent at each point, so that quasi-velocities do not follow from
-    /// velocities.
+    /// Operators that are linearly dependent at each point, so that velocities do not determine
+    /// quasi-velocities.
     #[error(
         "the frame has rank {rank} with {operators} operators, so its quasi-velocities are not determined"
     )]
@@ -252,7 +251,7 @@ pub enum AlgebraError {
     /// Frames that allow different velocities.
     #[error("X_{operator} of the one frame is not a combination of the operators of the other")]
     DifferentVelocities {
-        /// The first operator outside, 0 for the drift.
+        /// The first operator that the other frame does not allow, 0 for the drift.
         operator: usize,
     },
     /// An error of the expressions themselves.
@@ -260,8 +259,8 @@ pub enum AlgebraError {
     Expr(#[from] ExprError),
 }
 
-/// Describes the combination of operators that acts as zero on the coordinates; `name` gives the name of an
-/// operator.
+/// Describes in words the combination of operators that acts as zero on the coordinates; `name` gives the name
+/// of an operator.
 pub fn acts_as_zero(combination: &[(usize, String)], name: impl Fn(usize) -> String) -> String {
     let term = |(s, coefficient): &(usize, String)| match coefficient.as_str() {
         "1" => format!("+ {}", name(*s)),

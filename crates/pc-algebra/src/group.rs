@@ -1,8 +1,8 @@
 //! Lie groups in coordinates: numbers for integrators, expressions for frames.
 //!
-//! A group provides its invariant frames, exp and log, composition and projection. Read `group` (the
-//! interface), then a group: rotations of the plane and of space, motions of both, Heisenberg's groups,
-//! products. `rotation`, `exponential` and `stumpff` are shared computations.
+//! A group provides invariant frames, exp and log, composition and projection. Read `group` (the
+//! interface), then one of the groups: rotations of the plane and of space, motions of the plane and of
+//! space, Heisenberg groups, products. `rotation`, `exponential` and `stumpff` are shared computations.
 
 pub(crate) mod direct_product;
 pub(crate) mod euler_angles;

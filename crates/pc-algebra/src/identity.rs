@@ -1,9 +1,10 @@
-//! Verdicts on identities that the graph does not decide: proved, open, disproved.
+//! Verdicts on identities, including those that the graph does not decide: proved, open, disproved.
 //!
-//! `identity` is the verdict; `sample` evaluates at pseudo-random points near a state, in numbers that
-//! distinguish a small value from the rounding error of zero ([`Weighed`](pc_expr::Weighed));
-//! `magnitudes` are those of the symbols in the units of the expressions; `jump` finds points at which
-//! an expression jumps, `discontinuity` surfaces on which functions jump, by their values alone.
+//! `identity` is the verdict; `sample` evaluates at pseudo-random points near a state, with numbers
+//! that distinguish a small value from the rounding error of zero ([`Weighed`](pc_expr::Weighed));
+//! `magnitudes` finds those of the symbols in the units of the expressions; `jump` finds points at
+//! which an expression jumps, and `discontinuity` finds surfaces on which functions jump, from their
+//! values alone.
 
 pub(crate) mod discontinuity;
 pub(crate) mod identity;

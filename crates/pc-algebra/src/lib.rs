@@ -1,19 +1,19 @@
 //! Frames of operators, their algebra [X_r, X_s] = c_rs^m X_m (5), and the groups behind it.
 //!
-//! Numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994), with its
-//! misprints corrected. Index 0 is time; i, j count coordinates, r, s, m operators; repeated indices are
-//! summed over.
+//! Numbers in brackets are the equation numbers of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994),
+//! with its misprints corrected. Index 0 is time; i, j count coordinates, r, s, m operators; repeated indices
+//! are summed over.
 //!
 //! # Frame
 //!
 //! A mechanical system with coordinates x_1..x_n need not be described by the velocities ẋ. Quasi-velocities
 //! η_1..η_k are affine in them, η = a ẋ + a_0 (2); solved for the velocities,
 //!
-//! ẋ = b η + b_0 (3), b an n × k matrix, all of it depending on t and x.
+//! ẋ = b η + b_0 (3), where b is an n × k matrix, and all coefficients may depend on t and x.
 //!
-//! A [`Frame`] is b and b_0, made [from velocities](Frame::from_velocities) (3) or [from
-//! definitions](Frame::from_definitions) (2). If n > k it also stands for constraints (1), which the
-//! motion ẋ = b η + b_0 satisfies whatever η is.
+//! A [`Frame`] consists of b and b_0, and is made [from velocities](Frame::from_velocities) (3) or [from
+//! definitions](Frame::from_definitions) (2). If n > k it also represents constraints (1), which the motion ẋ =
+//! b η + b_0 satisfies for every η.
 //!
 //! # Operators
 //!
@@ -25,8 +25,8 @@
 //!
 //! If the commutators are combinations of the operators again, \[X_r, X_s\] = c_rs^m X_m (5) with r, s from 0
 //! and m from 1, the frame is closed and the c_rs^m are its [`StructureCoefficients`].
-//! [`Frame::structure_coefficients`] finds them from b alone, equal to (6), and names the pair if there is no
-//! combination:
+//! [`Frame::structure_coefficients`] finds them from the frame alone, in agreement with (6), and reports the
+//! pair if there is no such combination:
 //!
 //! ```
 //! use pc_algebra::{EulerAngles, Frame, LieAlgebra, LieGroup, Neighbourhood};
@@ -48,14 +48,14 @@
 //! # Ok::<(), pc_algebra::AlgebraError>(())
 //! ```
 //!
-//! Three questions that the c_rs^m answer: are the constraints integrable ([`Frame::integrability`],
-//! Frobenius); is η_m the velocity of a coordinate, η_m = dπ_m/dt (7) ([`Frame::holonomy`]); and how do the
-//! c_rs^m change with the frame ([`Frame::change_to`]).
+//! The c_rs^m answer three questions: are the constraints integrable ([`Frame::integrability`], Frobenius); is
+//! η_m the velocity of a coordinate, η_m = dπ_m/dt (7) ([`Frame::holonomy`]); and how do the c_rs^m change with
+//! the frame ([`Frame::change_to`]).
 //!
 //! # Lie algebra
 //!
-//! If the c_rs^m are constants, X_1..X_k span a [`LieAlgebra`]; those with a name are in the
-//! [`CATALOGUE`]. Its constants are exact, and so are its properties:
+//! If the c_rs^m are constants, X_1..X_k span a [`LieAlgebra`]; well-known algebras are listed by name in the
+//! [`CATALOGUE`]. The constants of an algebra are exact, and so are its properties:
 //! [series](LieAlgebra::derived_series), [centre](LieAlgebra::centre), [Killing
 //! form](LieAlgebra::killing_form), [rank](LieAlgebra::rank), [index](LieAlgebra::index) (the number of
 //! Casimirs), [invariant forms](LieAlgebra::invariant_quadratic_forms).
@@ -72,17 +72,18 @@
 //!
 //! # Lie group
 //!
-//! An algebra belongs to the motions of a [`LieGroup`]: [`RotationMatrices`], [`UnitQuaternions`] and
-//! [`EulerAngles`] for so(3), [`PlaneRotations`], [`PlaneMotions`], [`RigidMotions`], [`HeisenbergGroup`],
-//! and every [`DirectProduct`]. A group provides exact frames: body velocities [on the
-//! left](LieGroup::left_frame), whose structure coefficients are the constants of the algebra, and spatial
-//! velocities [on the right](LieGroup::right_frame), with the opposite ones. It also provides numbers, for
-//! integrators and initial values: [`LieGroup::exp`] and its derivative, [`LieGroup::log`],
-//! [`LieGroup::compose`], [`LieGroup::project`].
+//! A [`LieGroup`] has such an algebra: [`RotationMatrices`], [`UnitQuaternions`] and [`EulerAngles`] for so(3),
+//! [`PlaneRotations`], [`PlaneMotions`], [`RigidMotions`], [`HeisenbergGroup`], and every [`DirectProduct`]. A
+//! group provides exact frames: body velocities [on the left](LieGroup::left_frame), whose structure
+//! coefficients are the constants of the algebra, and spatial velocities [on the right](LieGroup::right_frame),
+//! whose structure coefficients have the opposite sign. It also provides numbers, for integrators and initial
+//! values: [`LieGroup::exp`] and its derivative, [`LieGroup::log`], [`LieGroup::compose`],
+//! [`LieGroup::project`].
 //!
 //! # Around it
 //!
-//! Below: [`pc_expr`], its expressions. Above: [pc-mech](../pc_mech/index.html), which puts a Lagrangian on a frame.
+//! Below this crate: [`pc_expr`], its expressions. Above it: [pc-mech](../pc_mech/index.html), which puts a
+//! Lagrangian on a frame.
 
 mod error;
 mod frame;

@@ -1,9 +1,9 @@
-//! Lie algebras by their exact structure constants, and the properties of an algebra as a whole.
+//! Lie algebras, given by exact structure constants, and the properties of an algebra as a whole.
 //!
 //! The c_rs^m are rational numbers, and every property is exact. Read `structure_constants` and `lie_algebra` first;
-//! `series` (centre, derived, lower central), `killing`, `rank` and `invariant_forms` give a `subspace` or a number.
-//! Algebras come from a `catalogue`, `families`, `matrix_algebra`, or from others by `product` and `representation`;
-//! `bianchi` names those of three dimensions.
+//! `series` (centre, derived, lower central), `killing`, `rank` and `invariant_forms` return a `subspace`, a number
+//! or forms. Algebras come from a `catalogue`, `families`, `matrix_algebra`, or from other algebras by `product` and
+//! `representation`; `bianchi` has the named types in three dimensions.
 
 pub(crate) mod bianchi;
 pub(crate) mod catalogue;

@@ -1,7 +1,7 @@
 //! Matrices of expressions and of rational numbers.
 //!
-//! `matrix` is the container; `affine` takes coefficients out of expressions; `block_triangular` and `inverse` invert
-//! matrices of expressions without new singularities. `echelon` eliminates over the rationals.
+//! `matrix` is the container; `affine` extracts coefficients from expressions; `block_triangular` and `inverse`
+//! invert matrices of expressions without introducing singularities. `echelon` does elimination over the rationals.
 
 pub(crate) mod affine;
 pub(crate) mod block_triangular;

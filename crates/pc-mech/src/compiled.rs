@@ -1,14 +1,15 @@
 //! From expressions to a compiled motion.
 //!
-//! All equations are one kind of [first-order system](first_order::FirstOrder), ẏ = g(t, y, w) with M w = r.
-//! Read that first, then `elimination` (how w is found), `implicit` (equations that are not linear in w), `compile`, and
-//! `motion`, the resulting `vector_field`, with `options` and `machine_code`. Under constraints states lie on a manifold and
-//! integrals may be kept: `projection`, `on_constraints`. `legendre_transform` converts momenta into quasi-velocities and
-//! back; `in_momenta` is the motion of momenta under constraints, `forced_motion` the motion under forces computed outside.
-//! `running_error` bounds rounding, `point` holds the arguments of evaluations, `chart` detects where quasi-velocities and
-//! velocities no longer determine each other, `change_point` where constraints lose rank; `mass_factors` solves with M alone;
-//! `jumps` are the places where rates jump, `switches` holds rates of several pieces on one side of them, with the
-//! `surface_slopes` between them, and `failure` says why rates are undefined.
+//! All equations are brought into the form of one kind of [first-order system](first_order::FirstOrder), ẏ = g(t, y, w) with
+//! M w = r. Read that first, then `elimination` (how w is found), `implicit` (equations that are not linear in w), `compile`,
+//! and `motion`, the resulting `vector_field`, with `options` and `machine_code`. Under constraints states lie on a manifold,
+//! to which `projection` and `on_constraints` return them; integrals can be kept constant in the same way.
+//! `legendre_transform` converts momenta into quasi-velocities and back; `in_momenta` is the motion of momenta under
+//! constraints, `forced_motion` the motion under forces computed outside. `running_error` bounds rounding errors, `point`
+//! holds the arguments of evaluations, `chart` detects where quasi-velocities and velocities no longer determine each other,
+//! `change_point` detects where constraints lose rank; `mass_factors` solves with M alone; `jumps` finds where rates jump,
+//! `switches` keeps piecewise rates on one side of these jumps, with the `surface_slopes` between them, and `failure` says
+//! why rates are undefined.
 
 pub(crate) mod change_point;
 pub(crate) mod chart;

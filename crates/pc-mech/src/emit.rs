@@ -1,7 +1,8 @@
 //! Equations of motion as C or Rust source without dependencies.
 //!
-//! Equations become [files](source::EmittedFile). Read `source` (the contents of a file), `function` (further
-//! functions), then `c` and `rust`, which write it, then `emit`, which decides what is computed.
+//! Equations are written to [files](source::EmittedFile). Read `source` (the contents of a file), `function`
+//! (further functions), then `c` and `rust`, which write these contents, then `emit`, which decides what is
+//! computed.
 
 pub(crate) mod c;
 pub(crate) mod emit;

@@ -1,8 +1,8 @@
-//! Equations of motion in expressions: Poincaré's (9) and Chetaev's (10), (11).
+//! Equations of motion as expressions: Poincaré's (9) and Chetaev's (10), (11).
 //!
-//! A [`System`](crate::System) has [`Equations`](poincare::Equations) M η̇ = r, or, by the `legendre` transformation,
-//! [`Canonical`](canonical::Canonical) ones; `momenta` expresses functions of velocities in momenta, `book` writes the
-//! equations as sums of products, and `functions` compiles expressions of their state.
+//! A [`System`](crate::System) has the [`Equations`](poincare::Equations) M η̇ = r, or, after the `legendre`
+//! transformation, [`Canonical`](canonical::Canonical) equations; `momenta` expresses functions of velocities in
+//! momenta, `book` writes the equations as sums of products, and `functions` compiles expressions of their state.
 
 pub(crate) mod book;
 pub(crate) mod canonical;

@@ -1,8 +1,9 @@
 //! Poincaré–Chetaev mechanics: from a Lagrangian to equations of motion. `pc-analysis` analyses the motions.
 //!
-//! Numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994), with its misprints
-//! corrected. Conventions are those of [`pc_algebra`]: index 0 is time; i, j = 1..n count coordinates, r, s, m = 1..k
-//! quasi-velocities; repeated indices are summed over. The library is unit-agnostic: any consistent units will do.
+//! Numbers in brackets are the equation numbers of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994), with
+//! its misprints corrected. Conventions are those of [`pc_algebra`]: index 0 is time; i, j = 1..n count coordinates,
+//! r, s, m = 1..k quasi-velocities; repeated indices are summed over. The library is unit-agnostic: any consistent
+//! units will do.
 //!
 //! # System
 //!
@@ -11,8 +12,8 @@
 //! ẋ = b η + b_0 (3), \[X_r, X_s\] = c_rs^m X_m (5), L(t, x, η) = T + U with U minus the potential energy, and
 //! Q_s (8), the force conjugate to η_s.
 //!
-//! [`System::builder`] takes each in the form in which books give it. The frame is given by [velocities in terms of
-//! η](SystemBuilder::kinematics) or as a [`Frame`](SystemBuilder::frame); without either, η = ẋ. The
+//! [`System::builder`] takes each of these in the form in which books give it. The frame is given by [velocities in
+//! terms of η](SystemBuilder::kinematics) or as a [`Frame`](SystemBuilder::frame); without either, η = ẋ. The
 //! [algebra](SystemBuilder::algebra) is needed only where b does not determine it, because its rank is below k. The
 //! Lagrangian is the sum of [T](SystemBuilder::kinetic), [−V](SystemBuilder::potential), [L(t, x,
 //! η)](SystemBuilder::lagrangian), [L(t, x, ẋ)](SystemBuilder::lagrangian_in_velocities) and what each
@@ -27,7 +28,7 @@
 //!
 //! d/dt ∂L/∂η_s = (c_rs^m η_r + c_0s^m) ∂L/∂η_m + X_s L + Q_s (9)
 //!
-//! and solves them for η̇: [`Equations`] are M η̇ = r with M = ∂²L/∂η∂η.
+//! and solves them for η̇: [`Equations`] has the form M η̇ = r with M = ∂²L/∂η∂η.
 //!
 //! ```
 //! use pc_mech::{Graph, LieAlgebra, System};
@@ -50,10 +51,10 @@
 //! # Ok::<(), pc_mech::MechError>(())
 //! ```
 //!
-//! With η = ẋ all c_rs^m vanish and (9) are Lagrange's equations. On a group, with constant c_rs^m and X_s L
-//! = 0, they are Euler's. For η_s = dπ_s/dt that are the velocities of no coordinates they are those of
-//! Boltzmann and Hamel (18), with ∂/∂π_s for X_s. [`System::in_quasi_velocities`] goes from one to the other,
-//! [`System::in_velocities`] back to Lagrange's:
+//! With η = ẋ all c_rs^m vanish and (9) are Lagrange's equations. On a group, with constant c_rs^m and X_s L =
+//! 0, they are Euler's. For η_s = dπ_s/dt that are not the velocities of any coordinates they are the
+//! Boltzmann–Hamel equations (18), with ∂/∂π_s for X_s. [`System::in_quasi_velocities`] changes from one form
+//! to another, [`System::in_velocities`] back to Lagrange's equations:
 //!
 //! ```
 //! use pc_mech::{Graph, System};
@@ -74,19 +75,20 @@
 //!
 //! # Redundant coordinates
 //!
-//! Coordinates with relations f_α(t, x) = 0 between them, or velocities with C η + c_0 = 0, are given a
-//! [`Constraint`] each. [`System::with_multipliers`] keeps all of them and adds the reactions,
+//! Each relation f_α(t, x) = 0 between coordinates, and each relation C η + c_0 = 0 between velocities, becomes
+//! a [`Constraint`]. [`System::with_multipliers`] keeps all coordinates and velocities and adds the reactions,
 //!
 //! M η̇ = r + Cᵀ λ;
 //!
-//! its [`Motion`] is singular only where the constraints themselves are, and has a projection by which an integrator
-//! stays on them. [`Multipliers::in_independent_velocities`] solves for some velocities and leaves the equations
+//! its [`Motion`] is singular only where the constraints themselves are, and has a projection that keeps an
+//! integrator on them. [`Multipliers::in_independent_velocities`] solves for some velocities and leaves the
+//! equations
 //!
 //! d/dt ∂L/∂ẋ_s − ∂L/∂x_s − b_js ∂L/∂x_j = Q_s (14)–(16),
 //!
-//! which are fewer, without reactions, and singular where the choice is. The first is for long motions and for
-//! reactions, the second for further transformations of a system; its canonical equations are (17). The second refuses
-//! constraints on velocities that are not integrable, which `pc-nonholo` treats.
+//! which are fewer, without reactions, and singular where the choice of velocities is. The first form is for long
+//! motions and for reactions, the second for further transformations of a system; its canonical equations are (17).
+//! The second form refuses constraints on velocities that are not integrable, which `pc-nonholo` treats.
 //!
 //! ```
 //! use pc_mech::{Constraint, Graph, System};
@@ -152,8 +154,8 @@
 //! # Symmetry
 //!
 //! Coordinates on which neither L nor Q depends can be left out by [`System::reduced`]. On a group with
-//! invariant L none remain: (9) become Euler–Poincaré's equations, (10) those of Lie–Poisson, ẏ_s = c_rs^m
-//! ∂H/∂y_r y_m.
+//! invariant L no coordinates remain: (9) become Euler–Poincaré's equations, (10) those of Lie–Poisson, ẏ_s =
+//! c_rs^m ∂H/∂y_r y_m.
 //!
 //! ```
 //! use pc_mech::{Graph, LieGroup, RotationMatrices, System};
@@ -183,9 +185,9 @@
 //! # Numbers and source
 //!
 //! [`Equations::compile`], [`Canonical::compile_for`] and [`Multipliers::compile`] make a [`Motion`], a
-//! [`VectorField`] ẏ = f(t, y) that owns all it needs; [`CompileOptions`] say which derivatives it has, and
-//! for which kernel. Parameters stay adjustable. Integrals, energy and outputs are
-//! [observed](Motion::observe). With an [`ExternalForce`] it is a [`ForcedMotion`]. [`Equations::emit`]
+//! [`VectorField`] ẏ = f(t, y) that owns everything it needs; [`CompileOptions`] say which derivatives it has,
+//! and for which kernel it is compiled. Parameters stay adjustable. Integrals, energy and outputs are
+//! [observed](Motion::observe). With an [`ExternalForce`] the result is a [`ForcedMotion`]. [`Equations::emit`]
 //! writes the same operations as C or Rust without dependencies.
 //!
 //! ```
@@ -213,9 +215,9 @@
 //!
 //! # Around it
 //!
-//! Below: [`pc_algebra`], frames and brackets. Above: [pc-nonholo](../pc_nonholo/index.html), constraints that are not integrable;
-//! [pc-analysis](../pc_analysis/index.html), the analysis of the motions; [pc-model](../pc_model/index.html), systems from text.
-//! Beside it, [pc-solve](../pc_solve/index.html) integrates a [`Motion`].
+//! Below this crate: [`pc_algebra`], frames and brackets. Above it: [pc-nonholo](../pc_nonholo/index.html), constraints that are
+//! not integrable; [pc-analysis](../pc_analysis/index.html), the analysis of the motions; [pc-model](../pc_model/index.html),
+//! systems from text. Beside it, [pc-solve](../pc_solve/index.html) integrates a [`Motion`].
 
 mod compiled;
 mod constraints;

@@ -1,10 +1,9 @@
 //! Descriptions of mechanical systems: frame, Lagrangian, forces, bodies.
 //!
-//! The description of a system, as books give it, becomes a [`System`](system::System). Read `system`, then
-//! `builder`, which takes each part in its usual form, and `build`, which combines them; `continuity` checks for jumps; `bodies` are the
-//! contributions of particles and rigid bodies, `forces` the forms of Q_s (8), `external_force` forces
-//! computed outside, `states` checks for first-order states, `signals` inputs that are functions of time;
-//! `energy_rate` is the rate of the energy.
+//! The description of a system, in the form in which books give it, becomes a [`System`](system::System). Read `system`, then `builder`,
+//! which takes each part in its usual form, and `build`, which combines them; `continuity` checks for jumps; `bodies` are the
+//! contributions of particles and rigid bodies, `forces` the forms of Q_s (8), `external_force` forces computed outside, `states` checks
+//! for first-order states, `signals` inputs that are functions of time; `energy_rate` is the rate of the energy.
 
 pub(crate) mod bodies;
 pub(crate) mod build;

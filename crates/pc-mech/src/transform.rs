@@ -1,7 +1,7 @@
 //! Transformations of a system into another one with the same motions.
 //!
-//! `quasi_velocities` changes to other η, `lagrange` back to ẋ, `velocities` converts states between them;
-//! `restriction` keeps the last η at zero, `reduction` leaves out ignorable coordinates, and
+//! `quasi_velocities` changes to other η, `lagrange` changes back to ẋ, `velocities` converts states
+//! between them; `restriction` keeps the last η at zero, `reduction` leaves out ignorable coordinates, and
 //! `orthonormal_frame` makes the mass matrix the unit matrix.
 
 pub(crate) mod lagrange;

@@ -29,8 +29,8 @@ impl<'g> Frame<'g> {
     /// # Errors
     /// [`AlgebraError::DifferentSpaces`]; [`AlgebraError::Shape`] if the numbers of operators differ;
     /// [`AlgebraError::DependentOperators`] if one of the frames has rank b < k;
-    /// [`AlgebraError::DifferentVelocities`] naming the first operator, 0 for the drift, that `other` does
-    /// not allow.
+    /// [`AlgebraError::DifferentVelocities`] with the first operator, 0 for the drift, that `other` does not
+    /// allow.
     ///
     /// ```
     /// # use pc_algebra::{EulerAngles, LieGroup, Neighbourhood};
@@ -84,7 +84,7 @@ impl<'g> Frame<'g> {
 }
 
 impl<'g> Frame<'g> {
-    /// The change to the quasi-velocities η' = A η + A_0, with A of k × k and A_0 of length k, for a frame of
+    /// The change to the quasi-velocities η' = A η + A_0, where A is k × k and A_0 has length k, for a frame of
     /// any rank.
     ///
     /// # Errors
@@ -120,7 +120,7 @@ impl<'g> Frame<'g> {
     }
 }
 
-/// Whether η' = A η + A_0 is η: the expensive products are then superfluous.
+/// Whether η' = A η + A_0 is η: the expensive products are then unnecessary.
 fn is_identity(a: &Matrix<Expr<'_>>, a0: &[Expr<'_>]) -> bool {
     let entry = |i: usize, j: usize| a[(i, j)] == if i == j { Expr::ONE } else { Expr::ZERO };
     a0.iter().all(|a0| a0.is_zero()) && (0..a.rows()).all(|i| (0..a.columns()).all(|j| entry(i, j)))
@@ -147,14 +147,14 @@ impl<'g> FrameChange<'g> {
         &self.back.0
     }
 
-    /// η = B η' + B_0; `eta` has length k.
+    /// The old quasi-velocities η = B η' + B_0, where `eta` is η', of length k.
     pub fn old_quasi_velocities(&self, eta: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let (graph, (b, b0)) = (self.to.graph(), &self.back);
         let row = |m: usize| b.nonzero(m).map(|(s, b)| b * eta[s]);
         (0..eta.len()).map(|m| graph.sum(row(m).chain([b0[m]]))).collect()
     }
 
-    /// η' = A η + A_0; `eta` has length k.
+    /// The new quasi-velocities η' = A η + A_0, where `eta` is η, of length k.
     pub fn quasi_velocities(&self, eta: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let graph = self.to.graph();
         let row = |u: usize| self.matrix.nonzero(u).map(|(s, a)| a * eta[s]);
@@ -195,7 +195,7 @@ impl<'g> FrameChange<'g> {
         })
     }
 
-    /// B_ps for p = 0..k: the components of X'_s along X_0..X_k, s = 0..k.
+    /// The components B_ps, p = 0..k, of X'_s along X_0..X_k, for s = 0..k.
     ///
     /// # Panics
     /// If s is out of range.

@@ -1,4 +1,4 @@
-//! Finding and checking the structure coefficients of a frame (6), and its closure.
+//! Finds and checks the structure coefficients of a frame (6), and checks its closure.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,23 +12,22 @@ use crate::lie_algebra::jacobi::{check_jacobi, cyclic};
 use crate::linear_algebra::inverse::inverse;
 use crate::linear_algebra::matrix::Matrix;
 
-/// The terms of the components m of Jacobi's identity, by the triple r < s < u.
+/// The terms of each component m of Jacobi's identity, for each triple r < s < u.
 type JacobiDefects<'g> = BTreeMap<(usize, usize, usize), BTreeMap<usize, Vec<Expr<'g>>>>;
 
 impl<'g> Frame<'g> {
     /// The structure coefficients of the frame (6), found from b and b_0 alone.
     ///
-    /// If rank b = k they solve b c_rs = [X_r, X_s] in the least-squares sense, c_rs = (bᵀb)⁻¹bᵀ[X_r,
-    /// X_s]. If rank b < k that would lose the part of c along ker b; then coefficients are sought that
-    /// hold at all points and depend only on parameters and time, and the frame determines them if no
-    /// combination of the operators with such coefficients vanishes. In both cases the result reproduces
-    /// every commutator.
+    /// If rank b = k they solve b c_rs = [X_r, X_s] in the least-squares sense, c_rs = (bᵀb)⁻¹bᵀ[X_r, X_s]. If
+    /// rank b < k that would lose the part of c along ker b; so coefficients are sought that hold at all
+    /// points and depend only on parameters and time. The frame determines them if no combination of the
+    /// operators with such coefficients vanishes. In both cases the result reproduces every commutator.
     ///
-    /// `near` says where the expressions of the frame are regular.
+    /// `near` is a neighbourhood in which the expressions of the frame are regular.
     ///
     /// # Errors
-    /// [`AlgebraError::NotClosed`] and [`AlgebraError::RankDeficient`], both naming the pair (r, s);
-    /// [`AlgebraError::Undetermined`] naming the combination that vanishes; [`AlgebraError::AlgebraNeeded`] if
+    /// [`AlgebraError::NotClosed`] and [`AlgebraError::RankDeficient`], both with the pair (r, s);
+    /// [`AlgebraError::Undetermined`] with the combination that vanishes; [`AlgebraError::AlgebraNeeded`] if
     /// there are operators but no coordinates.
     pub fn structure_coefficients(
         &self,
@@ -71,7 +70,7 @@ impl<'g> Frame<'g> {
     /// Checks given structure coefficients against the commutators of the frame.
     ///
     /// # Errors
-    /// [`AlgebraError::Contradiction`] naming the pair; [`AlgebraError::Dimension`].
+    /// [`AlgebraError::Contradiction`] with the pair (r, s); [`AlgebraError::Dimension`].
     pub fn check(
         &self,
         structure: &StructureCoefficients<'g>,
@@ -107,7 +106,7 @@ impl<'g> Frame<'g> {
     /// Checks the Jacobi identity of given structure coefficients, X_u c_rs^m included.
     ///
     /// # Errors
-    /// [`AlgebraError::Jacobi`] naming the operators, 0 for time; [`AlgebraError::Dimension`].
+    /// [`AlgebraError::Jacobi`] with the operators, 0 for time; [`AlgebraError::Dimension`].
     pub fn check_jacobi(
         &self,
         structure: &StructureCoefficients<'g>,
@@ -134,7 +133,7 @@ impl<'g> Frame<'g> {
         Ok(())
     }
 
-    /// An error unless there are as many operators as the structure coefficients have.
+    /// Returns an error unless the frame has as many operators as the structure coefficients.
     fn check_dimension(&self, structure: &StructureCoefficients<'g>) -> Result<(), AlgebraError> {
         let (algebra, operators) = (structure.operators(), self.operators());
         if algebra == operators { Ok(()) } else { Err(AlgebraError::Dimension { algebra, operators }) }
@@ -146,7 +145,7 @@ impl<'g> Frame<'g> {
         self.coupled_pairs().into_iter().chain(given).collect()
     }
 
-    /// The terms of c_rs^p c_pu^m − X_u c_rs^m + cyclic that are not 0, by r < s < u and by m.
+    /// The terms of c_rs^p c_pu^m − X_u c_rs^m + cyclic that are not 0, for each triple r < s < u and each m.
     fn jacobi_defects(&self, structure: &StructureCoefficients<'g>) -> JacobiDefects<'g> {
         let all = structure.both_ways();
         let mut of_first = vec![Vec::new(); self.operators() + 1];
@@ -173,11 +172,11 @@ impl<'g> Frame<'g> {
         defects
     }
 
-    /// (bᵀWb)⁻¹bᵀW with the [weights](Self::weights) W of the coordinates, or b⁻¹ if b is square; `None`
-    /// if rank b < k.
+    /// The left inverse (bᵀWb)⁻¹bᵀW with the [weights](Self::weights) W of the coordinates, or b⁻¹ if b is
+    /// square; `None` if rank b < k.
     ///
-    /// Coordinates that [follow](Self::followers) others are left out: if the remaining b is square, b⁻¹ is
-    /// accurate to the rounding of b, while bᵀb squares the condition of b and, with rounded constants, hides
+    /// Coordinates that [follow](Self::followers) others are left out: if the remaining b is square, b⁻¹ is as
+    /// accurate as b itself, while bᵀb squares the condition number of b and, with rounded constants, hides
     /// cancellations.
     pub(crate) fn left_inverse(&self) -> Option<Matrix<Expr<'g>>> {
         let (graph, b, k) = (self.graph(), self.b(), self.operators());
@@ -202,8 +201,9 @@ impl<'g> Frame<'g> {
         }))
     }
 
-    /// The weights: 1, except powers of 2 for coordinates in whose units the velocities are so small that
-    /// bᵀb would lose them among the others, and 0 for those that move only by rounding errors.
+    /// The weights of the coordinates. They are 1, except for powers of 2 for coordinates in whose units the
+    /// velocities are so small that bᵀb would lose them among the others, and 0 for coordinates whose
+    /// velocities are only rounding errors.
     fn weights(&self) -> Vec<Expr<'g>> {
         const SMALL: f64 = 1e-3;
         let (b, k) = (self.b(), self.operators());
@@ -236,7 +236,7 @@ impl<'g> Frame<'g> {
         (0..b.rows()).map(weight).collect()
     }
 
-    /// Largest component of Y − c^m X_m relative to its terms, for an operator Y such as [X_r, X_s] whose
+    /// The largest component of Y − c^m X_m relative to its terms, for an operator Y such as [X_r, X_s] whose
     /// components are sums.
     pub(crate) fn residual<const N: usize>(
         &self,
@@ -245,7 +245,7 @@ impl<'g> Frame<'g> {
         near: &Neighbourhood<'g>,
     ) -> f64 {
         let difference = |(i, terms): (usize, &[Expr<'g>; N])| -> Vec<Expr<'g>> {
-            // There are fewer c^m than operators if some of these are combinations of others.
+            // There are fewer c^m than operators if some operators are combinations of others.
             let combination = self.b().nonzero(i).filter_map(|(s, b)| Some(-(b * *c.get(s)?)));
             terms.iter().copied().chain(combination).filter(|term| !term.is_zero()).collect()
         };

@@ -1,9 +1,9 @@
 //! Constant structure coefficients of frames whose operators are dependent at each point.
 //!
-//! If rank b < k, b c_rs = [X_r, X_s] has many solutions c_rs at each point, and therefore many solutions
-//! that change from point to point. Solutions that are the same at all points, functions of parameters and
-//! time only, are unique if no combination of the operators with such coefficients vanishes; otherwise
-//! none of them is distinguished as the bracket.
+//! If rank b < k, b c_rs = [X_r, X_s] has many solutions c_rs at each point, and therefore many solutions that
+//! change from point to point. Solutions that are the same at all points, functions of parameters and time
+//! only, are unique if no combination of the operators with such coefficients vanishes; otherwise none of them
+//! can be singled out as the bracket.
 
 use nalgebra::{DMatrix, DVector};
 use pc_expr::{Expr, Graph, Number};
@@ -15,19 +15,20 @@ use crate::identity::sample::Neighbourhood;
 use crate::linear_algebra::inverse::inverse;
 use crate::linear_algebra::matrix::Matrix;
 
-/// Operators whose singular values spread more than this may be dependent, as far as numbers show.
+/// If the ratio of the smallest to the largest singular value of some operators is below this, they may be
+/// dependent, as far as numbers show.
 const DEPENDENT: f64 = 1e-9;
-/// The fraction of a vector that rounding may leave in place of a zero component.
+/// The size, relative to a vector, that rounding errors may give to a component that is zero.
 const ROUNDED: f64 = 1e-11;
-/// The most points tried for each operator to find as many equations as unknowns.
+/// The maximum number of points tried per operator to find as many equations as unknowns.
 const POINTS: usize = 8;
 
 impl<'g> Frame<'g> {
     /// The c_rs^m with b c_rs = [X_r, X_s] that do not depend on the coordinates.
     ///
     /// # Errors
-    /// [`AlgebraError::Undetermined`] if there may be several; [`AlgebraError::RankDeficient`] naming the
-    /// first pair for which there are none.
+    /// [`AlgebraError::Undetermined`] if there may be several solutions; [`AlgebraError::RankDeficient`] with
+    /// the first pair for which there is none.
     pub(crate) fn constant_coefficients(
         &self,
         rank: usize,
@@ -45,7 +46,8 @@ impl<'g> Frame<'g> {
         })
     }
 
-    /// An error if a combination of the operators with coefficients independent of the coordinates vanishes.
+    /// Returns an error if a combination of the operators with coefficients independent of the coordinates
+    /// vanishes.
     ///
     /// # Errors
     /// [`AlgebraError::Undetermined`]
@@ -127,7 +129,8 @@ impl<'g> Frame<'g> {
         Some((0..targets.len()).map(fraction).collect())
     }
 
-    /// The coefficients from as many of the equations Σ a_s X_s = Y at simple points as there are unknowns.
+    /// The coefficients, computed from as many of the equations Σ a_s X_s = Y, taken at simple points, as there
+    /// are unknowns.
     fn solved(
         &self,
         operators: &[Vec<Expr<'g>>],
@@ -157,7 +160,8 @@ impl<'g> Frame<'g> {
         None
     }
 
-    /// a of Σ a_s X_s = Y, k equations with the same left-hand sides, for each of the right-hand sides.
+    /// The solutions a of Σ a_s X_s = Y, k equations with the same left-hand sides, one for each of the
+    /// right-hand sides.
     fn solution<'h>(
         &self,
         equations: &[Vec<Expr<'h>>],
@@ -179,8 +183,8 @@ impl<'g> Frame<'g> {
         (0..targets).map(solve).collect()
     }
 
-    /// The expressions with small numbers in place of coordinates that are not arguments of functions,
-    /// and new symbols in place of the others, which cancel from results that do not depend on them.
+    /// The expressions with small numbers substituted for coordinates that are not arguments of functions, and
+    /// new symbols for the other coordinates; these symbols cancel from results that do not depend on them.
     fn at_simple_point<'h>(&self, entries: &[Expr<'g>], point: usize, page: &'h Graph) -> Vec<Expr<'h>> {
         let graph = self.graph();
         let value =
@@ -196,7 +200,7 @@ impl<'g> Frame<'g> {
         graph.evaluate(entries, &values).unwrap_or_default() // every symbol has a value
     }
 
-    /// The coefficients in numbers, at the values that parameters and time have in the neighbourhood.
+    /// The coefficients as numbers, at the values that parameters and time have in the neighbourhood.
     fn fitted(
         &self,
         operators: &[Vec<Expr<'g>>],
@@ -210,7 +214,8 @@ impl<'g> Frame<'g> {
             .map(|target| {
                 let right: DVector<f64> = stacked.column(k + target).clone_owned();
                 let solution = svd.solve(&right, 0.0).ok()?;
-                // The columns have length 1 now, so a share is small against 1, in any units, where the coefficient is 0.
+                // The columns have length 1 now, so where a coefficient is 0 its share is small compared with 1, in any
+                // units.
                 let coefficient = |(&share, size): (&f64, &f64)| match share.abs() < ROUNDED {
                     true => Expr::ZERO,
                     false => nearest_fraction(share * sizes[k + target] / size).into(),
@@ -220,7 +225,7 @@ impl<'g> Frame<'g> {
             .collect()
     }
 
-    /// A combination of the operators that vanishes up to rounding, if there is one.
+    /// A combination of the operators that vanishes up to rounding errors, if there is one.
     fn vanishing_in_numbers(
         &self,
         operators: &[Vec<Expr<'g>>],
@@ -243,7 +248,7 @@ impl<'g> Frame<'g> {
     }
 
     /// The columns at points near the centre, stacked, each coordinate in units in which the largest entry is 1; parameters
-    /// and time have their present values.
+    /// and time have their values at the centre.
     fn stacked(&self, columns: &[Vec<Expr<'g>>], near: &Neighbourhood<'g>) -> DMatrix<f64> {
         let (graph, n) = (self.graph(), self.coordinates().len());
         let centre =
@@ -263,7 +268,7 @@ impl<'g> Frame<'g> {
     }
 }
 
-/// Σ a_s X_s − X_last as (s, coefficient), from 1.
+/// The vanishing combination Σ a_s X_s − X_last as pairs (s, coefficient), s counted from 1.
 fn vanishing(a: &[Expr<'_>], last: usize) -> Vec<(usize, String)> {
     let known = (1..).zip(a).filter(|(_, a)| !a.is_zero()).map(|(s, a)| (s, a.to_string()));
     let mut terms: Vec<(usize, String)> = known.collect();
@@ -271,8 +276,8 @@ fn vanishing(a: &[Expr<'_>], last: usize) -> Vec<(usize, String)> {
     terms
 }
 
-/// The value of a coordinate: first each in turn is 1 and the others are 0, then they are small pseudo-random
-/// numbers.
+/// The value of a coordinate at a point: at the first points each coordinate in turn is 1 and the others are 0;
+/// after that all are small pseudo-random numbers.
 fn simple(place: usize, salt: usize, point: usize, coordinates: usize) -> Number {
     if point < coordinates {
         return Number::integer(i32::from(point == place));
@@ -289,7 +294,7 @@ fn normalised(mut columns: DMatrix<f64>) -> (DMatrix<f64>, Vec<f64>) {
     (columns, lengths)
 }
 
-/// A fraction with a denominator up to 1000 that equals `value` to eleven digits, else the number itself.
+/// A fraction with a denominator up to 1000 that equals `value` to eleven digits, or else the value itself.
 fn nearest_fraction(value: f64) -> Number {
     let near = |den: i64| {
         let num = (value * den as f64).round();

@@ -8,16 +8,17 @@ use crate::frame::structure::{StructureCoefficients, pairs};
 use crate::identity::sample::Neighbourhood;
 use crate::linear_algebra::matrix::Matrix;
 
-/// Quasi-velocities of a frame solved for the others, η_D = A_DI η_I + A_D0; the remaining operators are
+/// A frame after some quasi-velocities have been expressed in terms of the others, η_D = A_DI η_I + A_D0; the
+/// remaining operators are
 ///
 ///   X'_I = X_I + A_DI X_D,   X'_0 = X_0 + A_D0 X_D.
 #[derive(Clone, Debug)]
 pub struct Elimination<'g> {
     whole: Frame<'g>,
-    /// D, then I, numbered from 0.
+    /// The indices in D, then those in I, numbered from 0.
     dependent: Vec<usize>,
     free: Vec<usize>,
-    /// A_DI, a row for each of D.
+    /// A_DI, with a row for each index in D.
     matrix: Matrix<Expr<'g>>,
     /// A_D0
     drift: Vec<Expr<'g>>,
@@ -25,8 +26,8 @@ pub struct Elimination<'g> {
 }
 
 impl<'g> Frame<'g> {
-    /// The frame after elimination of the operators `dependent`, numbered from 0: η_D = A_DI η_I + A_D0,
-    /// where I are the others in order, `matrix` is A_DI and `drift` A_D0.
+    /// The frame after elimination of the operators `dependent`, numbered from 0, by η_D = A_DI η_I + A_D0. I
+    /// are the others in order, `matrix` is A_DI and `drift` is A_D0.
     ///
     /// # Errors
     /// [`AlgebraError::Shape`]
@@ -74,7 +75,7 @@ impl<'g> Elimination<'g> {
     /// and c'_rs^I = Y^I if Y^D = A_DI Y^I, which is the test of Frobenius.
     ///
     /// # Errors
-    /// [`AlgebraError::Shape`] unless `c` has k operators; [`AlgebraError::NotClosed`] naming the first pair whose
+    /// [`AlgebraError::Shape`] unless `c` has k operators; [`AlgebraError::NotClosed`] with the first pair whose
     /// bracket is not a combination of the remaining operators.
     ///
     /// ```
@@ -121,7 +122,7 @@ impl<'g> Elimination<'g> {
         })
     }
 
-    /// The terms of Y^D − A_DI Y^I for a field given by the terms of its components.
+    /// The terms of Y^D − A_DI Y^I, for a field Y given by the terms of its components.
     fn outside(&self, field: &[Vec<Expr<'g>>]) -> Vec<Vec<Expr<'g>>> {
         let row = |(d, &m): (usize, &usize)| -> Vec<Expr<'g>> {
             let carried = self.matrix.nonzero(d).map(|(i, a)| (self.free[i], a));

@@ -8,13 +8,14 @@ use crate::identity::sample::Neighbourhood;
 /// The number of points at which rows are compared numerically before a quotient is formed.
 const POINTS: usize = 2;
 
-/// Quotients of the entries of two proportional rows agree to this, up to rounding.
+/// The relative difference within which the quotients of entries of two proportional rows agree, despite
+/// rounding errors.
 const SAME: f64 = 1e-9;
 
 impl<'g> Frame<'g> {
     /// Whether coordinate i follows another: its row of b is zero, or f times that of a coordinate j that
-    /// does not follow, with an f that is defined wherever row i is. So ẋ_i says no more about η than
-    /// ẋ_j.
+    /// does not follow, with an f that is defined wherever row i is. So ẋ_i contains no more information
+    /// about η than ẋ_j does.
     ///
     /// On the circle, x' = −y ω and y' = x ω, neither follows the other: −y/x has no value at x = 0.
     pub(crate) fn followers(&self) -> Vec<bool> {
@@ -43,7 +44,7 @@ impl<'g> Frame<'g> {
             })
     }
 
-    /// Whether row i is a regular multiple of row j, with zeros at the same places.
+    /// Whether row i is a regular multiple of row j, with zeros in the same columns.
     fn follows(&self, i: usize, j: usize, near: &Neighbourhood<'g>) -> bool {
         let (graph, b) = (self.graph(), self.b());
         let places = || (0..self.operators()).filter(|&s| !b[(j, s)].is_zero());

@@ -21,7 +21,7 @@ pub struct Frame<'g> {
     coordinates: Vec<Expr<'g>>,
     b: Matrix<Expr<'g>>,
     b0: Vec<Expr<'g>>,
-    /// a, where b is defined as a⁻¹.
+    /// The matrix a, if b is defined as a⁻¹.
     a: Option<Matrix<Expr<'g>>>,
 }
 
@@ -43,10 +43,10 @@ impl<'g> Frame<'g> {
         Ok(Frame { graph, time, coordinates, b, b0, a: None })
     }
 
-    /// The frame of ẋ = `velocities`, expressions affine in the symbols `eta` (3).
+    /// The frame of ẋ = `velocities`, which are expressions affine in the symbols `eta` (3).
     ///
     /// # Errors
-    /// [`AlgebraError::Shape`]; [`AlgebraError::NotAffine`] naming the coordinate.
+    /// [`AlgebraError::Shape`]; [`AlgebraError::NotAffine`] with the coordinate.
     pub fn from_velocities(
         graph: &'g Graph,
         time: Expr<'g>,
@@ -62,8 +62,8 @@ impl<'g> Frame<'g> {
         Frame::new(graph, time, coordinates, b, b0)
     }
 
-    /// The frame of quasi-velocities η = `definitions`, n expressions affine in the symbols `velocities` of ẋ
-    /// (2): η = a ẋ + a_0, b = a⁻¹, b_0 = −b a_0.
+    /// The frame of quasi-velocities η = `definitions`, which are n expressions affine in the symbols
+    /// `velocities` of ẋ (2): η = a ẋ + a_0, b = a⁻¹, b_0 = −b a_0.
     ///
     /// # Errors
     /// [`AlgebraError::Shape`], [`AlgebraError::DefinitionNotAffine`], [`AlgebraError::SingularDefinitions`].
@@ -92,13 +92,13 @@ impl<'g> Frame<'g> {
         Frame { graph, time, coordinates, b, b0: vec![Expr::ZERO; n], a: None }
     }
 
-    /// The matrix a of η = a ẋ + a_0 if the frame was made [from definitions](Frame::from_definitions):
-    /// where det a = 0 these do not determine ẋ.
+    /// The matrix a of η = a ẋ + a_0 if the frame was made [from definitions](Frame::from_definitions): where
+    /// det a = 0 the definitions do not determine ẋ.
     pub fn definition_matrix(&self) -> Option<&Matrix<Expr<'g>>> {
         self.a.as_ref()
     }
 
-    /// The graph of all expressions of the frame.
+    /// The graph that contains all expressions of the frame.
     pub fn graph(&self) -> &'g Graph {
         self.graph
     }
@@ -113,7 +113,7 @@ impl<'g> Frame<'g> {
         &self.coordinates
     }
 
-    /// Number k of operators, time not counted.
+    /// Number k of operators, not counting time.
     pub fn operators(&self) -> usize {
         self.b.columns()
     }
@@ -123,12 +123,12 @@ impl<'g> Frame<'g> {
         &self.b
     }
 
-    /// The drift b_0, length n.
+    /// The drift b_0, of length n.
     pub fn b0(&self) -> &[Expr<'g>] {
         &self.b0
     }
 
-    /// ẋ = b η + b_0 (3); `eta` has length k.
+    /// The velocities ẋ = b η + b_0 (3); `eta` has length k.
     pub fn velocities(&self, eta: &[Expr<'g>]) -> Vec<Expr<'g>> {
         (0..self.coordinates.len())
             .map(|i| {
@@ -166,8 +166,8 @@ impl<'g> Frame<'g> {
         Ok((a, a0))
     }
 
-    /// X_s f for each f of `functions`, s = 0..k (4): the rates of change when ẋ_i = b_is (and ṫ = 1 for s =
-    /// 0).
+    /// The derivatives X_s f of each f in `functions`, s = 0..k (4): the rates of change when ẋ_i = b_is (and ṫ
+    /// = 1 for s = 0).
     pub fn apply(&self, s: usize, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let rates: Vec<(Expr<'g>, Expr<'g>)> = if s == 0 {
             let drift = self.coordinates.iter().copied().zip(self.b0.iter().copied());
@@ -179,7 +179,7 @@ impl<'g> Frame<'g> {
         self.graph.directional(functions, &moving)
     }
 
-    /// X_s L = b_is ∂L/∂x_i for s = 1..k, given the gradient ∂L/∂x (length n).
+    /// The derivatives X_s L = b_is ∂L/∂x_i for s = 1..k, given the gradient ∂L/∂x (length n).
     pub fn contract(&self, gradient: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let mut terms = vec![Vec::new(); self.operators()];
         for (i, &slope) in gradient.iter().enumerate() {
@@ -193,15 +193,15 @@ impl<'g> Frame<'g> {
         self.commutator_terms(r, s).into_iter().map(|[forth, back]| forth + back).collect()
     }
 
-    /// The terms X_r(b_is) and −X_s(b_ir) of the components.
+    /// The two terms X_r(b_is) and −X_s(b_ir) of each component of the commutator.
     pub(crate) fn commutator_terms(&self, r: usize, s: usize) -> Vec<[Expr<'g>; 2]> {
         let forth = self.apply(r, &self.operator(s));
         let back = self.apply(s, &self.operator(r));
         forth.into_iter().zip(back).map(|(forth, back)| [forth, -back]).collect()
     }
 
-    /// The pairs r < s of 0..k whose commutator may not vanish, in order: one of the operators moves what the other's
-    /// components depend on.
+    /// The pairs r < s of 0..k whose commutator may not vanish, in order: one of the operators changes something on
+    /// which the other's components depend.
     pub(crate) fn coupled_pairs(&self) -> Vec<(usize, usize)> {
         let movers = self.movers();
         let mut coupled = BTreeSet::new();
@@ -218,7 +218,7 @@ impl<'g> Frame<'g> {
         self.coupled_pairs().into_iter().all(|(r, s)| self.commutator(r, s).iter().all(|c| c.is_zero()))
     }
 
-    /// Which operators move which coordinates.
+    /// Which operators change which coordinates.
     pub(crate) fn movers(&self) -> Movers<'g> {
         let mut by_name: HashMap<Option<String>, Vec<usize>> = HashMap::new();
         by_name.entry(self.time.symbol_name()).or_default().push(0);
@@ -262,14 +262,15 @@ impl<'g> Frame<'g> {
         }
     }
 
-    /// The frame with every coefficient passed through `f`.
+    /// The frame with `f` applied to every coefficient.
     #[must_use]
     pub fn map(&self, mut f: impl FnMut(Expr<'g>) -> Expr<'g>) -> Frame<'g> {
         let (b, a) = (self.b.map(&mut f), self.a.as_ref().map(|a| a.map(&mut f)));
         Frame { b, b0: self.b0.iter().map(|&x| f(x)).collect(), a, ..self.clone() }
     }
 
-    /// The frame with all its expressions, including time and coordinates, replaced by those of a graph.
+    /// The frame with all its expressions, including time and coordinates, replaced by expressions in another
+    /// graph.
     #[must_use]
     pub fn written_in<'n>(&self, graph: &'n Graph, mut f: impl FnMut(Expr<'g>) -> Expr<'n>) -> Frame<'n> {
         Frame {
@@ -282,8 +283,8 @@ impl<'g> Frame<'g> {
         }
     }
 
-    /// Rank of b at almost all points, as decided by the graph; less if numbers show that its operators
-    /// are dependent.
+    /// Rank of b at almost all points, as decided by the graph; it is less if numerical values show that the
+    /// operators are dependent.
     pub fn rank(&self) -> usize {
         let known = self.graph.generic_rank_of_entries(self.b.columns(), &self.b.nonzero_rows());
         let near = Neighbourhood::anywhere(self.graph, &self.b.nonzero_entries());
@@ -292,27 +293,27 @@ impl<'g> Frame<'g> {
     }
 }
 
-/// The operators that move each coordinate, and time.
+/// The operators that change each coordinate, and time.
 pub(crate) struct Movers<'g> {
     graph: &'g Graph,
     by_name: HashMap<Option<String>, Vec<usize>>,
 }
 
 impl<'g> Movers<'g> {
-    /// The operators X_s, s = 0..k, with X_s f ≠ 0 for some of the functions, or at least not evidently 0.
+    /// The operators X_s, s = 0..k, for which X_s f is not evidently 0 for at least one of the functions f.
     pub(crate) fn of(&self, functions: &[Expr<'g>]) -> BTreeSet<usize> {
         let symbols = self.graph.symbols_of(functions);
         symbols.iter().filter_map(|x| self.by_name.get(&x.symbol_name())).flatten().copied().collect()
     }
 }
 
-/// An error unless `found` is `expected`.
+/// Returns an error unless `found` equals `expected`.
 pub(crate) fn shape(what: &'static str, found: usize, expected: usize) -> Result<(), AlgebraError> {
     if found == expected { Ok(()) } else { Err(AlgebraError::Shape { what, found, expected }) }
 }
 
-/// Coefficients and constant part of expressions affine in `symbols`; otherwise the index of the first that
-/// is not.
+/// The coefficients and the constant parts of expressions affine in `symbols`; otherwise the index of the first
+/// expression that is not.
 fn affine_parts<'g>(
     graph: &'g Graph,
     symbols: &[Expr<'g>],

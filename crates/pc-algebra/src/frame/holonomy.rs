@@ -8,10 +8,10 @@ use crate::frame::structure::StructureCoefficients;
 /// Whether a quasi-velocity η_m is the velocity of a coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Holonomy<'g> {
-    /// c_rs^m = 0 for all r, s = 0..k: locally η_m = dπ_m/dt (7), on each submanifold of the constraints if n
-    /// > k.
+    /// All c_rs^m = 0, r, s = 0..k: locally η_m = dπ_m/dt (7), on each submanifold of the constraints if n >
+    /// k.
     Holonomic {
-        /// π_m, if it is elementary to find.
+        /// The coordinate π_m, if it can be found by elementary means.
         coordinate: Option<Expr<'g>>,
     },
     /// There is no such coordinate.
@@ -22,7 +22,7 @@ pub enum Holonomy<'g> {
 }
 
 impl<'g> Frame<'g> {
-    /// Whether η_m is a velocity, m = 1..k, by the frame's own structure coefficients.
+    /// Whether η_m is a velocity, m = 1..k, judged by the frame's own structure coefficients.
     ///
     /// Let ω^m = a_mi dx_i + a_m0 dt be the form with ω^m(X_s) = δ_ms, s = 0..k, which is η_m dt along
     /// motions (2). By (6) dω^m(X_r, X_s) = −c_rs^m; so if n = k and the X_0..X_k are a basis, ω^m is
@@ -54,7 +54,7 @@ impl<'g> Frame<'g> {
         }
     }
 
-    /// π_m with dπ_m = ω^m, if it is found.
+    /// The coordinate π_m with dπ_m = ω^m, if it is found.
     fn quasi_coordinate(&self, m: usize) -> Option<Expr<'g>> {
         let is_rate = |i: &usize| {
             let mut row = self.b().nonzero(*i);

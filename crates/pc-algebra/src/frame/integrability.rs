@@ -1,4 +1,4 @@
-//! Frobenius' theorem for the velocities that a frame allows.
+//! Frobenius' theorem applied to the velocities that a frame allows.
 
 use nalgebra::{DMatrix, DVector};
 use pc_expr::{Expr, Weighed};
@@ -9,11 +9,11 @@ use crate::identity::sample::{Neighbourhood, TRIALS};
 /// Whether the velocities that a frame allows, ẋ = b η + b_0 (3), are those of motions on submanifolds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Integrability {
-    /// All [X_r, X_s], r, s = 0..k, are in the span of X_1..X_k at almost each point.
+    /// All [X_r, X_s], r, s = 0..k, are in the span of X_1..X_k at almost every point.
     ///
-    /// Through each (t, x) goes one submanifold that no motion leaves: its dimension at each instant is
-    /// rank b, and it moves with time as X_0 says. The n − rank b constraints that the frame stands for
-    /// can be written f(t, x) = const.
+    /// Through each (t, x) goes one submanifold that no motion leaves: its dimension at each instant is rank
+    /// b, and it moves with time according to X_0. The n − rank b constraints that the frame represents can
+    /// be written f(t, x) = const.
     Integrable {
         /// rank b.
         dimension: usize,
@@ -22,8 +22,8 @@ pub enum Integrability {
     NotIntegrable {
         /// The first such pair r < s.
         pair: (usize, usize),
-        /// Its largest distance from the span, relative to the terms of \[X_r, X_s\], each coordinate and
-        /// each operator in its own units.
+        /// Its largest distance from the span, relative to the terms of \[X_r, X_s\], with each coordinate
+        /// and each operator in its own units.
         residual: f64,
     },
 }
@@ -33,9 +33,9 @@ impl<'g> Frame<'g> {
     /// only if their commutators are in their span; since \[X_r, X_s\] has no ∂/∂t, this is the span of
     /// X_1..X_k.
     ///
-    /// The rank is that of almost all points, decided as by [`pc_expr::Graph::generic_rank`]; if that
+    /// The rank is that of almost all points, decided as by [`pc_expr::Graph::generic_rank`]; if the graph
     /// knows too little about the functions involved, a residual at points of `near` decides. Unlike
-    /// [`structure_coefficients`](Frame::structure_coefficients) this takes frames of any rank.
+    /// [`structure_coefficients`](Frame::structure_coefficients), this method accepts frames of any rank.
     ///
     /// To ask whether constraints η_α = 0 are holonomic, [restrict](Frame::restricted) the frame to the other
     /// operators.
@@ -73,8 +73,8 @@ impl<'g> Frame<'g> {
         Integrability::Integrable { dimension: rank }
     }
 
-    /// Largest distance from the span of X_1..X_k of an operator whose components are sums of two terms,
-    /// relative to these.
+    /// The largest distance of an operator from the span of X_1..X_k, relative to the two terms whose sum
+    /// each of its components is.
     fn distance_from_span(&self, y: &[[Expr<'g>; 2]], near: &Neighbourhood<'g>) -> f64 {
         let (n, k) = (self.b().rows(), self.operators());
         let outputs: Vec<Expr<'g>> = self.b().entries().iter().chain(y.as_flattened()).copied().collect();
@@ -94,8 +94,8 @@ impl<'g> Frame<'g> {
     }
 }
 
-/// Distance of y from the span of the columns of b, relative to the `size` of the terms of y. Columns, y and
-/// then rows are first scaled to size one, which makes it independent of units.
+/// The distance of y from the span of the columns of b, relative to the `size` of the terms of y. Columns, y
+/// and then rows are first scaled to size one, which makes the distance independent of units.
 fn scaled_distance(mut b: DMatrix<f64>, y: &DVector<f64>, size: &DVector<f64>) -> f64 {
     let largest = size.amax();
     if largest == 0.0 {

@@ -11,7 +11,7 @@ use crate::lie_algebra::lie_algebra::LieAlgebra;
 #[derive(Clone, Debug)]
 pub struct StructureCoefficients<'g> {
     operators: usize,
-    /// The c_rs^m that are not 0, r < s, as (r, s, m, c_rs^m) in the order of (r, s, m): most of the k³
+    /// The c_rs^m that are not 0, with r < s, as (r, s, m, c_rs^m) in the order of (r, s, m): most of the k³
     /// coefficients of a frame are 0.
     nonzero: Vec<(usize, usize, usize, Expr<'g>)>,
 }
@@ -21,7 +21,7 @@ impl<'g> StructureCoefficients<'g> {
     /// 0 to k − 1.
     ///
     /// Nothing is checked: [`Frame::check`](crate::Frame::check) and
-    /// [`Frame::check_jacobi`](crate::Frame::check_jacobi) say whether a frame has them.
+    /// [`Frame::check_jacobi`](crate::Frame::check_jacobi) check whether they are those of a frame.
     ///
     /// ```
     /// # use pc_algebra::StructureCoefficients;
@@ -41,8 +41,8 @@ impl<'g> StructureCoefficients<'g> {
         StructureCoefficients::from_nonzero(operators, indices.map(|(r, s, m)| (r, s, m + 1, c(r, s, m))))
     }
 
-    /// The coefficients with c_rs^m for the (r, s, m) that are listed, r ≠ s from 0 and m from 1, none twice;
-    /// the others are 0.
+    /// The coefficients with the listed c_rs^m, as (r, s, m, c_rs^m) with r ≠ s counted from 0 and m from 1,
+    /// none listed twice; the others are 0.
     pub(crate) fn from_nonzero(
         operators: usize,
         listed: impl IntoIterator<Item = (usize, usize, usize, Expr<'g>)>,
@@ -54,8 +54,8 @@ impl<'g> StructureCoefficients<'g> {
         StructureCoefficients { operators, nonzero }
     }
 
-    /// The coefficients with `c(r, s)` = (c_rs^1, …, c_rs^k) for the `pairs` r < s, r from 0; other pairs
-    /// commute.
+    /// The coefficients with `c(r, s)` = (c_rs^1, …, c_rs^k) for the `pairs` r < s, counted from 0; other
+    /// pairs commute.
     pub(crate) fn from_pairs<E>(
         operators: usize,
         pairs: impl IntoIterator<Item = (usize, usize)>,
@@ -71,7 +71,7 @@ impl<'g> StructureCoefficients<'g> {
     /// The coefficients of the same operators in another order: `order` is a permutation of 0..k.
     ///
     /// # Panics
-    /// If it is not a permutation.
+    /// If `order` is not a permutation.
     #[must_use]
     pub fn permuted(&self, order: &[usize]) -> StructureCoefficients<'g> {
         let mut new = vec![0; order.len() + 1];
@@ -87,23 +87,23 @@ impl<'g> StructureCoefficients<'g> {
         StructureCoefficients::from_nonzero(operators.min(self.operators), kept)
     }
 
-    /// The coefficients passed through `f`, which keeps 0.
+    /// The coefficients with `f` applied to each; `f` must map 0 to 0.
     #[must_use]
     pub fn map<'n>(&self, mut f: impl FnMut(Expr<'g>) -> Expr<'n>) -> StructureCoefficients<'n> {
         let mapped = self.nonzero.iter().map(|&(r, s, m, c)| (r, s, m, f(c)));
         StructureCoefficients::from_nonzero(self.operators, mapped)
     }
 
-    /// Number k of operators, time not counted.
+    /// Number k of operators, not counting time.
     pub fn operators(&self) -> usize {
         self.operators
     }
 
-    /// c_rs^m with r, s in 0..=k and m in 1..=k.
+    /// The coefficient c_rs^m with r, s in 0..=k and m in 1..=k.
     ///
     /// It is the Boltzmann–Hamel symbol γ_rs^m = (∂a_mi/∂x_j − ∂a_mj/∂x_i) b_ir b_js. Authors differ in its
-    /// sign and in the order of its indices: in d/dt ∂L/∂η_s + γ_sr^m η_r ∂L/∂η_m − ∂L/∂π_s = Q_s it has
-    /// the present ones.
+    /// sign and in the order of its indices: the convention here is that of d/dt ∂L/∂η_s + γ_sr^m η_r ∂L/∂η_m
+    /// − ∂L/∂π_s = Q_s.
     ///
     /// # Panics
     /// If an index is out of range.
@@ -134,7 +134,7 @@ impl<'g> StructureCoefficients<'g> {
         c
     }
 
-    /// The c_rs^m that are not 0, in order, both as (r, s, m) and as (s, r, m).
+    /// The c_rs^m that are not 0, in order, each listed both as (r, s, m) and as (s, r, m).
     pub(crate) fn both_ways(&self) -> Vec<(usize, usize, usize, Expr<'g>)> {
         let mut all: Vec<_> =
             self.nonzero.iter().flat_map(|&(r, s, m, c)| [(r, s, m, c), (s, r, m, -c)]).collect();
@@ -142,7 +142,7 @@ impl<'g> StructureCoefficients<'g> {
         all
     }
 
-    /// Whether all are constants: then the X_s form a Lie algebra.
+    /// Whether all coefficients are constants: then the X_s form a Lie algebra.
     pub fn are_constant(&self) -> bool {
         self.nonzero.iter().all(|(.., c)| c.constant().is_some())
     }
@@ -155,7 +155,7 @@ impl<'g> StructureCoefficients<'g> {
         Some(LieAlgebra::from_upper(self.operators, stationary.map(|(r, s, m, c)| (r - 1, s - 1, m - 1, c))))
     }
 
-    /// v_s = (c_rs^m η_r + c_0s^m) p_m for s = 1..k, the terms that brackets give the equations (9).
+    /// The terms v_s = (c_rs^m η_r + c_0s^m) p_m, s = 1..k, that brackets contribute to the equations (9).
     ///
     /// `eta` and `p` have length k.
     pub fn gyroscopic(&self, graph: &'g Graph, eta: &[Expr<'g>], p: &[Expr<'g>]) -> Vec<Expr<'g>> {
@@ -180,7 +180,7 @@ impl LieAlgebra {
         self.and_drift(&[])
     }
 
-    /// The structure coefficients with these c_rs^m and `drift(s, m)` = c_0s^m, indices from 0.
+    /// The structure coefficients with these c_rs^m and `drift(s, m)` = c_0s^m, with indices counted from 0.
     ///
     /// # Errors
     /// [`AlgebraError::Jacobi`], with index 0 for time, if \[X_0, ·\] is not a derivation of the algebra:
@@ -208,7 +208,7 @@ impl LieAlgebra {
         Ok(self.and_drift(&drift))
     }
 
-    /// The c_0s^m that are not 0, s and m from 1.
+    /// The c_0s^m that are not 0, with s and m counted from 1.
     fn drift(&self, drift: impl Fn(usize, usize) -> Number) -> Vec<(usize, usize, Number)> {
         let k = self.dim();
         let all = (0..k).flat_map(|s| (0..k).map(move |m| (s, m)));

@@ -8,9 +8,11 @@ use crate::group::group::{LieGroup, Side};
 use crate::lie_algebra::lie_algebra::LieAlgebra;
 use crate::linear_algebra::matrix::Matrix;
 
-/// The direct product G × H: the coordinates of G, then those of H, everything part by part.
+/// The direct product G × H. Its coordinates are those of G, then those of H, and every
+/// operation acts on each part separately.
 ///
-/// Names of coordinates of H that also occur in G get `_2` (or as many of these as necessary).
+/// `_2` is appended to names of coordinates of H that also occur in G, several times if
+/// necessary.
 ///
 /// ```
 /// use pc_algebra::{DirectProduct, LieGroup, PlaneRotations, UnitQuaternions};
@@ -34,7 +36,7 @@ impl<G: LieGroup, H: LieGroup> DirectProduct<G, H> {
         DirectProduct { first, second, coordinates, dim }
     }
 
-    /// `f` and `h` of the two parts of an element, concatenated.
+    /// `f` of the first part and `h` of the second part of an element, concatenated.
     fn joined<'a>(
         &self,
         g: &'a [f64],

@@ -1,4 +1,4 @@
-//! SO(3) by Euler angles in any of the twelve sequences.
+//! SO(3) in terms of Euler angles, in any of the twelve sequences.
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 use pc_expr::Expr;
@@ -10,8 +10,9 @@ use crate::group::rotation::{dynamic, hat, matrix_exp, matrix_log, vector};
 use crate::lie_algebra::lie_algebra::LieAlgebra;
 use crate::linear_algebra::matrix::Matrix;
 
-/// The rotations of space by three angles (α, β, γ), R = R_i(α) R_j(β) R_k(γ) from body axes to axes in
-/// space: the body is turned about its own axis i, then about its own axis j, then about its own axis k.
+/// The rotations of space, described by three angles (α, β, γ), R = R_i(α) R_j(β) R_k(γ) from body axes to
+/// axes in space: the body is turned about its own axis i, then about its own axis j, then about its own axis
+/// k.
 ///
 /// Proper Euler angles have k = i (`zxz`: ψ, θ, φ of the heavy top) and frames singular where sin β = 0,
 /// Tait–Bryan angles have three different axes (`zyx`: yaw, pitch, roll) and frames singular where cos β = 0.
@@ -30,8 +31,8 @@ impl EulerAngles {
     /// The angles about these axes, such as `zxz`.
     ///
     /// # Errors
-    /// [`AlgebraError::EulerSequence`] unless there are three letters among x, y, z with different
-    /// neighbours.
+    /// [`AlgebraError::EulerSequence`] unless there are three letters among x, y, z, and neighbouring letters
+    /// differ.
     ///
     /// ```
     /// # use pc_algebra::{EulerAngles, LieGroup, Side};
@@ -49,10 +50,10 @@ impl EulerAngles {
         if axes[0] == axes[1] || axes[1] == axes[2] { Err(refusal()) } else { Ok(EulerAngles { axes }) }
     }
 
-    /// The matrix R_i(α) R_j(β) R_k(γ) from body axes to axes in space, 3 × 3, of the angles `x`.
+    /// The 3 × 3 matrix R_i(α) R_j(β) R_k(γ) from body axes to axes in space, for the angles `x`.
     ///
     /// # Panics
-    /// If there are fewer than three.
+    /// If there are fewer than three angles.
     pub fn rotation_matrix<'g>(&self, x: &[Expr<'g>]) -> Matrix<Expr<'g>> {
         let [first, second, third] = [0, 1, 2].map(|i| turn(self.axes[i], x[i]));
         let product = |a: &Matrix<Expr<'g>>, b: &Matrix<Expr<'g>>| {
@@ -77,8 +78,8 @@ impl EulerAngles {
         about_axis(self.axes[0], g[0]) * about_axis(self.axes[1], g[1]) * about_axis(self.axes[2], g[2])
     }
 
-    /// α and β from R, then γ from row j of R_i(−α) R = R_j(β) R_k(γ), which is independent of β: so the
-    /// product is right for any α if R does not determine it.
+    /// Computes α and β from R, then γ from row j of R_i(−α) R = R_j(β) R_k(γ), which is independent of β: so
+    /// the product is correct for any α if R does not determine α.
     fn angles(&self, r: &Matrix3<f64>) -> Vec<f64> {
         let ([i, j, _], (l, sign)) = (self.axes, self.third());
         let sign = f64::from(sign);
@@ -95,7 +96,7 @@ impl EulerAngles {
         vec![alpha, beta, gamma]
     }
 
-    /// The matrix of (α̇, β̇, γ̇) = b ω with ω in body axes.
+    /// The matrix b of (α̇, β̇, γ̇) = b ω, with ω in body axes.
     fn body_rates<'g>(&self, beta: Expr<'g>, gamma: Expr<'g>) -> [[Expr<'g>; 3]; 3] {
         let ([i, j, k], (l, sign)) = (self.axes, self.third());
         let sign = f64::from(sign);
@@ -120,7 +121,7 @@ impl EulerAngles {
     }
 }
 
-/// The angle of (c, s), 0 if both are 0.
+/// The polar angle of (c, s); 0 if both are 0.
 fn angle(s: f64, c: f64) -> f64 {
     if s == 0.0 && c == 0.0 { 0.0 } else { s.atan2(c) }
 }
@@ -146,7 +147,7 @@ impl LieGroup for EulerAngles {
         LieAlgebra::so3()
     }
 
-    /// ψ, θ, φ for proper angles, yaw, pitch and roll about z, y and x otherwise.
+    /// The names ψ, θ, φ for proper angles; otherwise yaw, pitch and roll for angles about z, y and x.
     fn coordinates(&self) -> Vec<String> {
         if self.is_proper() {
             return ["psi", "theta", "phi"].map(Into::into).to_vec();
@@ -187,7 +188,7 @@ impl LieGroup for EulerAngles {
         exponential::dexp_inverse(side, &dynamic(&hat(&vector(x))), vector(x).norm())
     }
 
-    /// The largest difference of the entries of the rotation matrices.
+    /// The largest difference between the entries of the rotation matrices.
     fn distance(&self, g: &[f64], h: &[f64]) -> f64 {
         (self.rotation(g) - self.rotation(h)).amax()
     }
@@ -196,8 +197,8 @@ impl LieGroup for EulerAngles {
         finite(g)
     }
 
-    /// On the right it uses the inverse rotation R_k(−γ) R_j(−β) R_i(−α), whose body velocity is −ω
-    /// for the spatial velocity ω of R.
+    /// On the right the matrix is found from the inverse rotation R_k(−γ) R_j(−β) R_i(−α), whose body
+    /// velocity is −ω for the spatial velocity ω of R.
     fn operators<'g>(&self, side: Side, x: &[Expr<'g>]) -> Matrix<Expr<'g>> {
         let [i, j, k] = self.axes;
         let b = match side {

@@ -1,12 +1,13 @@
-//! The derivative of the exponential map if ad x has the eigenvalue 0 and at most double eigenvalues ±iθ.
+//! The derivative of the exponential map, for ad x with the eigenvalue 0 and eigenvalues ±iθ that are at most
+//! double.
 
 use nalgebra::DMatrix;
 
 use crate::group::group::Side;
 use crate::group::stumpff::stumpff;
 
-/// Σ (±A)^i/(i + 1)!, minus on the left, for A = `ad` with A(A² + θ²)² = 0:
-/// 1 + d_1(±A) + d_2 A² + d_3(±A³) + d_4 A⁴, the d_i by interpolation in 0 and, doubly, ±iθ.
+/// The series Σ (±A)^i/(i + 1)!, with minus on the left, for A = `ad` with A(A² + θ²)² = 0. It is computed as
+/// 1 + d_1(±A) + d_2 A² + d_3(±A³) + d_4 A⁴, with the d_i found by interpolation at 0 and, doubly, at ±iθ.
 pub(crate) fn dexp(side: Side, ad: &DMatrix<f64>, angle: f64) -> DMatrix<f64> {
     let [_, c1, c2, c3, c4, c5] = stumpff(angle);
     polynomial(
@@ -16,8 +17,8 @@ pub(crate) fn dexp(side: Side, ad: &DMatrix<f64>, angle: f64) -> DMatrix<f64> {
     )
 }
 
-/// The inverse of [`dexp`]: the function ζ/(e^ζ − 1) = ½ζ(coth ½ζ − 1) of ζ = ±A on the right and left, whose
-/// only odd term is −½ζ.
+/// The inverse of [`dexp`]: the function ζ/(e^ζ − 1) = ½ζ(coth ½ζ − 1) of ζ = ±A, plus on the right and minus
+/// on the left; its only odd term is −½ζ.
 pub(crate) fn dexp_inverse(side: Side, ad: &DMatrix<f64>, angle: f64) -> DMatrix<f64> {
     let [_, c1, c2, c3, c4, c5] = stumpff(angle / 2.0);
     let square = (3.0 * (c2 - c3) * c1 - c3 * (1.0 + c1)) / (8.0 * c1 * c1);

@@ -1,4 +1,4 @@
-//! Lie groups in coordinates: numbers for integrators, expressions for frames.
+//! The interface of Lie groups in coordinates: numbers for integrators, expressions for frames.
 
 use nalgebra::DMatrix;
 use pc_expr::{Expr, Graph};
@@ -17,7 +17,7 @@ use crate::frame::frame::{Frame, shape};
 use crate::lie_algebra::lie_algebra::LieAlgebra;
 use crate::linear_algebra::matrix::Matrix;
 
-/// How a velocity of a group is mapped to the algebra.
+/// How a velocity on a group is mapped to the algebra.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// η = g⁻¹ġ: body velocities, the left-invariant operators X_s.
@@ -29,12 +29,12 @@ pub enum Side {
 /// A Lie group of dimension k, whose elements are given by n ≥ k coordinates.
 ///
 /// Elements g are slices of length n, elements x of the algebra slices of length k in the basis of
-/// [`algebra`](LieGroup::algebra). The coordinates may be redundant (n > k, as a rotation matrix), several
-/// values may stand for one element (angles), and the frame may be singular somewhere (Euler angles); each
-/// group states this.
+/// [`algebra`](LieGroup::algebra). The coordinates may be redundant (n > k, as for a rotation matrix),
+/// several values may represent the same element (angles), and the frame may be singular somewhere (Euler
+/// angles); the documentation of each group says so.
 ///
 /// # Panics
-/// The numerical functions panic if a slice is shorter than that.
+/// The numerical functions panic if a slice is shorter than these lengths.
 ///
 /// ```
 /// use pc_algebra::{LieGroup, RigidMotions};
@@ -59,38 +59,39 @@ pub trait LieGroup {
     /// g⁻¹
     fn inverse(&self, g: &[f64]) -> Vec<f64>;
 
-    /// exp x, the end at time 1 of the motion g⁻¹ġ = x that starts at 1.
+    /// The element exp x, which the motion g⁻¹ġ = x reaches at time 1 if it starts at the identity.
     fn exp(&self, x: &[f64]) -> Vec<f64>;
 
-    /// An x with exp x = g, on the branch that the group states.
+    /// An x with exp x = g, on the branch stated for the group.
     fn log(&self, g: &[f64]) -> Vec<f64>;
 
-    /// The matrix of Ad_g x = g x g⁻¹, k × k.
+    /// The k × k matrix of Ad_g x = g x g⁻¹.
     fn adjoint(&self, g: &[f64]) -> DMatrix<f64>;
 
-    /// The derivative of exp at x, mapped to the algebra, k × k: d/dε exp(x + εy) at ε = 0 is exp(x)·D(x)y
-    /// with [`Side::Left`] and D(x)y·exp(x) with [`Side::Right`], where
+    /// The derivative of exp at x, mapped to the algebra, as a k × k matrix: d/dε exp(x + εy) at ε = 0 is
+    /// exp(x)·D(x)y with [`Side::Left`] and D(x)y·exp(x) with [`Side::Right`], where
     ///
     /// D(x) = (1 − e^(−ad x))/ad x = Σ (−ad x)^i/(i + 1)! with [`Side::Left`],
     /// D(x) = (e^(ad x) − 1)/ad x = Σ (ad x)^i/(i + 1)! with [`Side::Right`].
     fn dexp(&self, side: Side, x: &[f64]) -> DMatrix<f64>;
 
-    /// The inverse D(x)⁻¹ of [`dexp`](LieGroup::dexp), k × k: ẋ = D(x)⁻¹η for g = exp x.
+    /// The k × k inverse D(x)⁻¹ of [`dexp`](LieGroup::dexp): ẋ = D(x)⁻¹η for g = exp x.
     ///
     /// It has poles where rotations by 2π and their multiples make D singular; the entries grow without bound
     /// there.
     fn dexp_inverse(&self, side: Side, x: &[f64]) -> DMatrix<f64>;
 
-    /// A distance of two elements in the entries that describe them, 0 only if they are the same.
+    /// A distance between two elements, measured by the entries that describe them; 0 only if they are the
+    /// same.
     fn distance(&self, g: &[f64], h: &[f64]) -> f64;
 
     /// The element nearest to coordinates that have drifted off the group.
     ///
     /// # Errors
-    /// [`AlgebraError::NoNearestElement`] if there is no nearest one.
+    /// [`AlgebraError::NoNearestElement`] if there is no nearest element.
     fn project(&self, g: &[f64]) -> Result<Vec<f64>, AlgebraError>;
 
-    /// The matrix b of ẋ = b η (3), n × k, at coordinates `x` of length n.
+    /// The n × k matrix b of ẋ = b η (3), at coordinates `x` of length n.
     fn operators<'g>(&self, side: Side, x: &[Expr<'g>]) -> Matrix<Expr<'g>>;
 
     /// Dimension k.
@@ -98,7 +99,7 @@ pub trait LieGroup {
         self.algebra().dim()
     }
 
-    /// The matrix of ad x = \[x, ·\], k × k.
+    /// The k × k matrix of ad x = \[x, ·\].
     fn ad(&self, x: &[f64]) -> DMatrix<f64> {
         let (algebra, k) = (self.algebra(), x.len());
         DMatrix::from_fn(k, k, |m, s| (0..k).map(|r| algebra.constant(r, s, m).to_f64() * x[r]).sum())
@@ -167,7 +168,7 @@ pub(super) fn principal(angle: f64) -> f64 {
     if angle.abs() <= std::f64::consts::PI { angle } else { sin.atan2(cos) }
 }
 
-/// `g`, if all its coordinates are numbers.
+/// The element `g`, if all its coordinates are finite.
 pub(super) fn finite(g: &[f64]) -> Result<Vec<f64>, AlgebraError> {
     if g.iter().all(|x| x.is_finite()) {
         return Ok(g.to_vec());

@@ -9,11 +9,11 @@ use crate::group::group::{LieGroup, Side, finite, largest_difference};
 use crate::lie_algebra::lie_algebra::LieAlgebra;
 use crate::linear_algebra::matrix::Matrix;
 
-/// The Heisenberg group of dimension 2n + 1: coordinates (x_1..x_n, y_1..y_n, z) and
-/// (x, y, z)(x', y', z') = (x + x', y + y', z + z' + ½(x·y' − y·x')).
+/// The Heisenberg group of dimension 2n + 1: coordinates (x_1..x_n, y_1..y_n, z) with the product (x, y,
+/// z)(x', y', z') = (x + x', y + y', z + z' + ½(x·y' − y·x')).
 ///
 /// The coordinates are those of the exponential map: exp and log leave the numbers unchanged. ẋ = a, ẏ = b,
-/// ż = c ± ½(x·b − y·a) with velocities (a, b, c), plus on the left.
+/// ż = c ± ½(x·b − y·a) with velocities (a, b, c), with plus on the left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HeisenbergGroup {
     n: usize,
@@ -71,7 +71,7 @@ impl LieGroup for HeisenbergGroup {
         DMatrix::identity(g.len(), g.len()) + self.ad(g)
     }
 
-    /// 1 ± ½ ad x, minus on the left.
+    /// The matrix 1 ± ½ ad x, with minus on the left.
     fn dexp(&self, side: Side, x: &[f64]) -> DMatrix<f64> {
         exponential::dexp(side, &self.ad(x), 0.0)
     }

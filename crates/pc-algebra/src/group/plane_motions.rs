@@ -10,11 +10,12 @@ use crate::group::stumpff::stumpff;
 use crate::lie_algebra::lie_algebra::LieAlgebra;
 use crate::linear_algebra::matrix::Matrix;
 
-/// The motions of the plane, SE(2): coordinates (φ, x, y), the motion that turns by φ and then shifts by (x,
-/// y).
+/// The motions of the plane, SE(2). The coordinates (φ, x, y) stand for the motion that turns by φ and then
+/// shifts by (x, y).
 ///
 /// φ̇ = ω; (ẋ, ẏ) = R(φ) v with body velocities (ω, v) (left), (ẋ, ẏ) = v + ω(−y, x) with spatial ones
-/// (right). Angles that differ by 2π are one element; `log` has |ω| ≤ π and ω = π at the half turn.
+/// (right). Angles that differ by 2π represent the same element; `log` has |ω| ≤ π and ω = π for the half
+/// turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlaneMotions;
 
@@ -28,7 +29,7 @@ fn turned(angle: f64, v: &Vector2<f64>) -> Vector2<f64> {
     Vector2::new(c * v.x - s * v.y, s * v.x + c * v.y)
 }
 
-/// a v + b J v with J the quarter turn.
+/// The vector a v + b J v, where J is the quarter turn.
 fn combined(a: f64, b: f64, v: &Vector2<f64>) -> Vector2<f64> {
     Vector2::new(a * v.x - b * v.y, b * v.x + a * v.y)
 }
@@ -85,7 +86,7 @@ impl LieGroup for PlaneMotions {
         exponential::dexp_inverse(side, &self.ad(x), x[0])
     }
 
-    /// The largest of the chord between the angles and the differences of x and y.
+    /// The largest of three numbers: the chord between the angles, and the differences in x and in y.
     fn distance(&self, g: &[f64], h: &[f64]) -> f64 {
         let chord = 2.0 * ((g[0] - h[0]) / 2.0).sin().abs();
         chord.max((place(g) - place(h)).amax())

@@ -1,4 +1,4 @@
-//! SO(2) by its angle.
+//! SO(2) in terms of its angle.
 
 use nalgebra::DMatrix;
 use pc_expr::Expr;
@@ -10,7 +10,8 @@ use crate::linear_algebra::matrix::Matrix;
 
 /// The rotations of the plane, SO(2): one coordinate, the angle φ, with φ̇ = η on either side.
 ///
-/// Angles that differ by 2π are one element; `log` and `compose` give the one in (−π, π].
+/// Angles that differ by 2π represent the same element; `log` and `compose` give the one in
+/// (−π, π].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlaneRotations;
 
@@ -55,7 +56,7 @@ impl LieGroup for PlaneRotations {
         DMatrix::identity(1, 1)
     }
 
-    /// 2|sin ½(φ_g − φ_h)|, the chord between the two points of the circle.
+    /// The chord 2|sin ½(φ_g − φ_h)| between the two points on the circle.
     fn distance(&self, g: &[f64], h: &[f64]) -> f64 {
         2.0 * ((g[0] - h[0]) / 2.0).sin().abs()
     }

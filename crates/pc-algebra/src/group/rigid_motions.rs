@@ -1,4 +1,4 @@
-//! SE(3) by quaternion and position.
+//! SE(3) in terms of a quaternion and a position.
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 use pc_expr::Expr;
@@ -14,8 +14,8 @@ use crate::group::unit_quaternions::{quaternion_operators, unit};
 use crate::lie_algebra::lie_algebra::LieAlgebra;
 use crate::linear_algebra::matrix::Matrix;
 
-/// The motions of space, SE(3) (covered twice, as the unit quaternions cover SO(3) twice): coordinates
-/// (q_0..q_3, x, y, z), the motion that turns by q and then shifts by r = (x, y, z).
+/// The motions of space, SE(3) (covered twice, as the unit quaternions cover SO(3) twice): the coordinates
+/// (q_0..q_3, x, y, z) stand for the motion that turns by q and then shifts by r = (x, y, z).
 ///
 /// Velocities are (ω, v): q̇ = ½ q ω, ṙ = R(q) v in body axes (left); q̇ = ½ ω q, ṙ = v + ω × r in axes in
 /// space (right). `log` has |ω| ≤ 2π. Its v has a pole at q = −1 unless r is along the axis of ω; at q =
@@ -23,7 +23,7 @@ use crate::linear_algebra::matrix::Matrix;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RigidMotions;
 
-/// ω and v, or the vector part of a quaternion and the position.
+/// The two halves of `x`: ω and v, or the vector part of a quaternion and the position.
 fn halves(x: &[f64]) -> (Vector3<f64>, Vector3<f64>) {
     (vector(x), vector(&x[3..]))
 }

@@ -15,7 +15,7 @@ pub(crate) fn hat(x: &Vector3<f64>) -> Matrix3<f64> {
     x.cross_matrix()
 }
 
-/// A 3 × 3 matrix of variable size.
+/// The 3 × 3 matrix as one of dynamic size.
 pub(crate) fn dynamic(matrix: &Matrix3<f64>) -> DMatrix<f64> {
     DMatrix::from_fn(3, 3, |i, j| matrix[(i, j)])
 }
@@ -26,13 +26,13 @@ pub(crate) fn matrix_exp(x: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::identity() + hat(x) * c1 + hat(x) * hat(x) * c2
 }
 
-/// exp of ½x as a quaternion: (cos ½θ, ½ c_1(½θ) x).
+/// The exponential of ½x as a quaternion: (cos ½θ, ½ c_1(½θ) x).
 pub(crate) fn quaternion_exp(x: &Vector3<f64>) -> Quaternion<f64> {
     let half = x.norm() / 2.0;
     Quaternion::from_parts(half.cos(), x * (stumpff(half)[1] / 2.0))
 }
 
-/// The x with |x| ≤ 2π whose quaternion is q: v·2 atan2(|v|, q_0)/|v|. For q = −1 it has the direction
+/// The x with |x| ≤ 2π whose quaternion is q: v·2 atan2(|v|, q_0)/|v|. For q = −1 it has the direction of
 /// `otherwise`.
 pub(crate) fn quaternion_log(q: &Quaternion<f64>, otherwise: &Vector3<f64>) -> Vector3<f64> {
     let v = q.vector().into_owned();
@@ -45,7 +45,7 @@ pub(crate) fn quaternion_log(q: &Quaternion<f64>, otherwise: &Vector3<f64>) -> V
     v * (2.0 * size.atan2(q.scalar()) / size)
 }
 
-/// The rotation vector with |x| ≤ π of a rotation matrix, by its quaternion.
+/// The rotation vector with |x| ≤ π of a rotation matrix, computed from its quaternion.
 pub(crate) fn matrix_log(r: &Matrix3<f64>) -> Vector3<f64> {
     quaternion_log(&quaternion_of(r), &Vector3::x())
 }
@@ -88,7 +88,7 @@ pub(crate) fn components(q: &Quaternion<f64>) -> [f64; 4] {
     [q.w, q.i, q.j, q.k]
 }
 
-/// The matrix of x ↦ q x q* in expressions, homogeneous of degree 2 in q. (With squares replaced by 1 − …,
+/// The matrix of x ↦ q x q* as expressions, homogeneous of degree 2 in q. (With squares replaced by 1 − …,
 /// its derivatives would be right only on unit quaternions.)
 pub(crate) fn rotation_of<'g>(q: &[Expr<'g>]) -> [[Expr<'g>; 3]; 3] {
     let square = |i: usize| q[i] * q[i];

@@ -1,4 +1,4 @@
-//! SO(3) by rotation matrices.
+//! SO(3) in terms of rotation matrices.
 
 use nalgebra::{DMatrix, Matrix3};
 use pc_expr::Expr;
@@ -10,20 +10,20 @@ use crate::group::rotation::{dynamic, hat, matrix_exp, matrix_log, vector};
 use crate::lie_algebra::lie_algebra::LieAlgebra;
 use crate::linear_algebra::matrix::Matrix;
 
-/// The rotations of space, SO(3), by the nine entries of R, row after row: R takes components along body axes
-/// to components along axes in space. Ṙ = R ω̂ with body velocities ω (left), Ṙ = ω̂ R with spatial ones
-/// (right), where ω̂ x = ω × x.
+/// The rotations of space, SO(3), described by the nine entries of R, row by row: R takes components along
+/// body axes to components along axes in space. Ṙ = R ω̂ with body velocities ω (left), Ṙ = ω̂ R with spatial
+/// ones (right), where ω̂ x = ω × x.
 ///
 /// `log` has |x| ≤ π. At π, where x and −x give the same R, it is the one whose first nonzero component is
-/// positive; it is computed by way of the quaternion and is also accurate there.
+/// positive. It is computed from the quaternion, and is accurate there too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RotationMatrices;
 
 impl RotationMatrices {
-    /// The matrix R from body axes to axes in space, 3 × 3, of its entries `x`, row after row.
+    /// The 3 × 3 matrix R from body axes to axes in space, with its entries `x` given row by row.
     ///
     /// # Panics
-    /// If there are fewer than nine.
+    /// If there are fewer than nine entries.
     pub fn rotation_matrix<'g>(&self, x: &[Expr<'g>]) -> Matrix<Expr<'g>> {
         Matrix::from_fn(3, 3, |i, j| x[3 * i + j])
     }
@@ -73,7 +73,7 @@ impl LieGroup for RotationMatrices {
         dynamic(&matrix(g))
     }
 
-    /// 1 ± ((1 − cos θ)/θ²) x̂ + ((θ − sin θ)/θ³) x̂², minus on the left.
+    /// The matrix 1 ± ((1 − cos θ)/θ²) x̂ + ((θ − sin θ)/θ³) x̂², with minus on the left.
     fn dexp(&self, side: Side, x: &[f64]) -> DMatrix<f64> {
         exponential::dexp(side, &dynamic(&hat(&vector(x))), vector(x).norm())
     }
@@ -86,8 +86,8 @@ impl LieGroup for RotationMatrices {
         largest_difference(g, h)
     }
 
-    /// U diag(1, 1, ±1) Vᵀ for R = U Σ Vᵀ with determinant 1, the rotation nearest in the sum of squares of
-    /// entries (not unique where the two smallest singular values and the sign make it so).
+    /// The matrix U diag(1, 1, ±1) Vᵀ with determinant 1, for R = U Σ Vᵀ: the nearest rotation in the sum of
+    /// squares of entries (not unique where the two smallest singular values and the sign make it so).
     fn project(&self, g: &[f64]) -> Result<Vec<f64>, AlgebraError> {
         let r = matrix(&finite(g)?);
         let no_nearest = || AlgebraError::NoNearestElement { element: g.to_vec() };

@@ -1,10 +1,11 @@
-//! Stumpff's functions, which express the exponentials of rotations and motions without cancellation.
+//! Stumpff's functions, in terms of which the exponentials of rotations and motions are free of
+//! cancellation.
 
 /// c_n(θ²) = Σ (−θ²)^i/(2i + n)! for n = 0..5, so that c_0 = cos θ, c_1 = sin θ/θ, c_2 = (1 − cos θ)/θ²,
 /// c_3 = (θ − sin θ)/θ³ and c_n = 1/n! − θ² c_(n+2).
 pub(crate) fn stumpff(angle: f64) -> [f64; 6] {
-    /// Below this angle the quotients lose digits (1/6 − c_3 is a fifth of its terms here) and the series is
-    /// short.
+    /// Below this angle the quotients lose digits (1/6 − c_3 is a fifth of its terms here) and the series
+    /// needs few terms.
     const SERIES: f64 = 2.0;
     let square = angle * angle;
     let [c4, c5];
@@ -19,7 +20,7 @@ pub(crate) fn stumpff(angle: f64) -> [f64; 6] {
     [c0, c1, c2, c3, c4, c5]
 }
 
-/// Σ (−z)^i/(2i + n)!: after 12 terms the rest is below 2⁻⁵³ of the sum for z ≤ 4, n ≥ 4.
+/// The sum Σ (−z)^i/(2i + n)!: after 12 terms the rest is below 2⁻⁵³ of the sum for z ≤ 4, n ≥ 4.
 fn series(n: u32, z: f64) -> f64 {
     const TERMS: u32 = 12;
     // 1/n! (1 − z/((n+1)(n+2)) (1 − z/((n+3)(n+4)) (…)))
@@ -49,7 +50,8 @@ mod tests {
         sum.to_f64().unwrap()
     }
 
-    /// 16 roundings: at the angle 2, (1/6 − c_3)/θ² loses a factor of six over the four or so of its terms.
+    /// 16 rounding errors: at the angle 2, (1/6 − c_3)/θ² magnifies the four or so rounding errors of its
+    /// terms by a factor of six.
     const RELATIVE: f64 = 16.0 * f64::EPSILON;
 
     #[test]

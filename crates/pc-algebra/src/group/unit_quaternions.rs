@@ -13,7 +13,7 @@ use crate::lie_algebra::lie_algebra::LieAlgebra;
 use crate::linear_algebra::matrix::Matrix;
 
 /// The unit quaternions q = (q_0, q_1, q_2, q_3), scalar first, with Hamilton's product ij = k. q and −q are
-/// two elements that stand for one rotation x ↦ q x q* from body axes to axes in space.
+/// two elements that represent the same rotation x ↦ q x q* from body axes to axes in space.
 ///
 /// The basis of the algebra is ½i, ½j, ½k, so that q̇ = ½ q ω with body angular velocity ω (left) and q̇ = ½
 /// ω q with the spatial one (right). `log` is the rotation vector with |x| ≤ 2π, (2π, 0, 0) for q = −1; if
@@ -23,7 +23,7 @@ use crate::linear_algebra::matrix::Matrix;
 pub struct UnitQuaternions;
 
 impl UnitQuaternions {
-    /// The matrix of x ↦ q x q* from body axes to axes in space, 3 × 3: |q|² times a rotation matrix.
+    /// The 3 × 3 matrix of x ↦ q x q* from body axes to axes in space: |q|² times a rotation matrix.
     ///
     /// # Panics
     /// If `q` has fewer than four entries.
@@ -100,7 +100,7 @@ impl LieGroup for UnitQuaternions {
     }
 }
 
-/// q/|q|, of the first four numbers.
+/// The unit quaternion q/|q|, where q consists of the first four numbers.
 pub(crate) fn unit(g: &[f64]) -> Result<[f64; 4], AlgebraError> {
     let q = quaternion(&finite(g)?);
     let largest = q.w.abs().max(q.i.abs()).max(q.j.abs()).max(q.k.abs());
@@ -113,7 +113,7 @@ pub(crate) fn unit(g: &[f64]) -> Result<[f64; 4], AlgebraError> {
     Ok(scaled.map(|x| x / norm))
 }
 
-/// The columns ½ q e_s on the left and ½ e_s q on the right, e_s = i, j, k.
+/// The matrix with the columns ½ q e_s on the left and ½ e_s q on the right, where e_s = i, j, k.
 pub(crate) fn quaternion_operators<'g>(side: Side, q: &[Expr<'g>]) -> Matrix<Expr<'g>> {
     let sign = if side == Side::Left { 1.0 } else { -1.0 };
     Matrix::from_fn(4, 3, |i, s| {

@@ -1,19 +1,20 @@
-//! Surfaces on which functions jump, found by their values on both sides.
+//! Surfaces on which functions jump, found from the values on both sides.
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Program};
 
 use crate::identity::magnitudes::magnitudes;
 
-/// The points from which each surface is sought; their components have magnitudes between 10⁻² and 10², in units in which the
-/// terms of the functions are of the same order.
+/// The number of points from which each surface is sought; their components have magnitudes between 10⁻² and 10², in units in
+/// which the terms of the functions are of the same order.
 const TRIALS: u64 = 32;
-/// Newton's steps to a surface, enough to halve the distance to a double zero as often as numbers allow.
+/// The maximum number of Newton's steps to a surface, enough to halve the distance to a double zero until
+/// precision is exhausted.
 const MOST_STEPS: usize = 60;
-/// A step this small relative to the point has converged.
+/// The iteration has converged when a step is this small relative to the point.
 const ARRIVED: f64 = 1e-12;
-/// The distance from a surface at which values are compared, relative to the size of the point.
+/// The distances from a surface at which values are compared, relative to the size of the point.
 const BESIDE: [f64; 3] = [1e-5, 1e-6, 1e-7];
-/// A jump is at least this fraction of the values, and equal at all distances to within a tenth.
+/// A jump is at least this fraction of the values, and the same at all distances to within a tenth.
 const LEAST: f64 = 1e-8;
 const SAME: f64 = 0.1;
 
@@ -22,17 +23,17 @@ const SAME: f64 = 0.1;
 pub struct Discontinuity<'g> {
     /// Vanishes there.
     pub surface: Expr<'g>,
-    /// The first of the functions that jumps, by its number.
+    /// The index of the first function that jumps.
     pub function: usize,
 }
 
 /// The [seams](Graph::seams) on which functions jump as the `moving` symbols change; the symbols of `numbers` have these
-/// values, all others may have any.
+/// values, all other symbols may have any value.
 ///
-/// Newton's steps lead to points of a seam. Lengths are those of vectors whose components are in units in which the terms of the
-/// functions and of the seam are of the same order. From the difference D(δ) of the values at the distances ±δ the part
-/// proportional to δ is subtracted, (D(qδ) − q D(δ))/(1 − q): if the rest is the same at each δ and is not rounding, it is a
-/// jump. At a corner or a root it falls with δ, at a pole it rises.
+/// Newton's steps lead to points on a seam. Lengths are measured with components in units in which the terms of the functions
+/// and of the seam are of the same order. From the difference D(δ) of the values at the distances ±δ, the part proportional to δ
+/// is subtracted: (D(qδ) − q D(δ))/(1 − q). If the rest is the same at each δ and is not a rounding error, it is a jump. At a
+/// corner or a root the rest falls with δ; at a pole it rises.
 ///
 /// # Errors
 /// As [`Program::new`].
@@ -93,8 +94,8 @@ pub fn discontinuities<'g>(
     Ok(found)
 }
 
-/// Whether a function may jump as the `changing` symbols change: it contains a sign, a step or an angle of them, or has
-/// [discontinuities]. The symbols of `numbers` have these values.
+/// Whether a function may jump as the `changing` symbols change: it contains a sign, a step or an angle that depends on
+/// them, or has [discontinuities]. The symbols of `numbers` have these values.
 ///
 /// # Errors
 /// As [`discontinuities`].
@@ -108,7 +109,7 @@ pub fn may_jump<'g>(
         || !discontinuities(graph, &[function], changing, numbers)?.is_empty())
 }
 
-/// A point with the fixed components, number `trial` of a sequence.
+/// Point number `trial` of a fixed sequence; the components that are fixed have their given values.
 fn point(trial: u64, fixed: &[Option<f64>], units: &[f64]) -> Vec<f64> {
     let number = |place: usize| {
         let bits = mixed(trial << 32 | place as u64);
@@ -120,7 +121,7 @@ fn point(trial: u64, fixed: &[Option<f64>], units: &[f64]) -> Vec<f64> {
     fixed.iter().enumerate().map(component).collect()
 }
 
-/// A seam between the pieces of some functions, with the places of the symbols that move across it.
+/// A seam between the pieces of some functions, with the indices of the symbols whose change crosses it.
 struct Sides<'a> {
     moving: Vec<usize>,
     /// The unit of each symbol.
@@ -154,7 +155,7 @@ impl Sides<'_> {
         })
     }
 
-    /// A point of the seam and the unit vector across it, by Newton's steps with difference quotients.
+    /// A point on the seam and the unit vector normal to it, found by Newton's steps with difference quotients.
     fn reach(&mut self, mut point: Vec<f64>) -> Option<(Vec<f64>, Vec<f64>)> {
         for _ in 0..MOST_STEPS {
             let size = self.size(&point);
@@ -181,7 +182,7 @@ impl Sides<'_> {
         None
     }
 
-    /// The size of the moving part of a point, 1 for one at the origin.
+    /// The size of the moving part of a point; 1 at the origin.
     fn size(&self, point: &[f64]) -> f64 {
         let in_units = |&place: &usize| (point[place] / self.units[place]).abs();
         let largest = self.moving.iter().map(in_units).fold(0.0f64, f64::max);
@@ -202,7 +203,7 @@ fn shifted(point: &[f64], (places, units): (&[usize], &[f64]), direction: &[f64]
     there
 }
 
-/// The bits of a number, mixed (splitmix64).
+/// The number with its bits mixed (splitmix64).
 fn mixed(number: u64) -> u64 {
     let mut z = number.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -4,9 +4,9 @@ use pc_expr::{Break, Expr, Graph, Weighed};
 
 use crate::identity::sample::{Neighbourhood, TRIALS};
 
-/// The number of Newton's steps to a surface: a surface that is not reached with these is ignored.
+/// The maximum number of Newton's steps to a surface: a surface that is not reached by then is ignored.
 const MOST_STEPS: usize = 40;
-/// A step this small relative to the point has converged.
+/// The iteration has converged when a step is this small relative to the point.
 const ARRIVED: f64 = 1e-14;
 /// The distance from the surface at which its sign is evaluated, relative to the size of the point.
 const BESIDE: f64 = 1e-6;
@@ -21,10 +21,10 @@ pub struct Jump {
 }
 
 impl<'g> Neighbourhood<'g> {
-    /// A jump of `value` at a surface that points pass when the `moving` symbols change, if there is one nearby.
+    /// A jump of `value` at a surface that is crossed when the `moving` symbols change, if there is one nearby.
     ///
     /// The surface is f = 0 of a `step` or `sign`; from points near the centre Newton's steps along ∇f lead to it. A difference
-    /// that is no more than rounding is not a jump, and neither is a surface that f only touches.
+    /// no larger than rounding errors is not a jump, and neither is one at a surface that f only touches.
     ///
     /// ```
     /// # use pc_algebra::Neighbourhood;
@@ -69,7 +69,7 @@ impl<'g> Neighbourhood<'g> {
     }
 }
 
-/// Moves a point to where f = 0 and f has another sign on either side; `surface` is f, ∇f.
+/// Moves a point to where f = 0 and f has opposite signs on the two sides; `surface` is f, ∇f.
 fn reach<'g>(
     graph: &'g Graph,
     surface: &[Expr<'g>],
@@ -98,14 +98,14 @@ fn reach<'g>(
     None
 }
 
-/// The size of the moving part of a point, 1 for one at the origin.
+/// The size of the moving part of a point; 1 at the origin.
 fn size<'g>(point: &[(Expr<'g>, f64)], moving: &[Expr<'g>]) -> f64 {
     let moved = point.iter().filter(|(z, _)| moving.contains(z));
     let size = moved.fold(0.0f64, |size, (_, value)| size.max(value.abs()));
     if size > 0.0 { size } else { 1.0 }
 }
 
-/// Moves a point along a direction in the moving symbols.
+/// Moves a point along a direction in the space of the moving symbols.
 fn shift<'g>(point: &mut [(Expr<'g>, f64)], moving: &[Expr<'g>], along: &[f64], distance: f64) {
     for (symbol, slope) in moving.iter().zip(along) {
         point.iter_mut().filter(|(z, _)| z == symbol).for_each(|(_, value)| *value += distance * slope);

@@ -1,22 +1,22 @@
-//! The orders of magnitude of symbols in the units of the expressions.
+//! Finds the orders of magnitude of symbols in the units of the expressions.
 //!
-//! Rational functions look alike at any point. Others have a scale: exp(−(10⁷x)²) has vanished at x = 1, and √(1 + 10⁻¹⁸x²) is 1
-//! there; they show their nature where x is of the order of 10⁻⁷ and 10⁹. There the [commensurable](Graph::commensurable) terms of
-//! the expressions are of the same order.
+//! Rational functions look alike at any point. Other functions have a scale: exp(−(10⁷x)²) has vanished at x = 1, and √(1 +
+//! 10⁻¹⁸x²) is 1 there; their character shows where x is of the order of 10⁻⁷ and 10⁹. There the
+//! [commensurable](Graph::commensurable) terms of the expressions are of the same order.
 
 use pc_expr::{Backend, Evaluator, Expr, Graph, Inputs, Program};
 
-/// Terms that differ by up to this many powers of ten are of the same order: each still counts beside the
+/// Terms that differ by up to this many powers of ten are of the same order: neither is negligible beside the
 /// other.
 const ORDERS: f64 = 2.0;
-/// The powers of ten by which a symbol is multiplied on trial.
+/// The powers of ten by which a symbol is multiplied in a trial.
 const STEPS: [f64; 12] = [1e1, 1e-1, 1e2, 1e-2, 1e3, 1e-3, 1e6, 1e-6, 1e9, 1e-9, 1e12, 1e-12];
-/// The count of a group without values: more powers of ten than exist.
+/// The disorder assigned to a group without values: more than any powers of ten can cause.
 const WITHOUT_VALUES: f64 = 1e6;
 
 /// Values of the `symbols` at which the terms of the expressions are of the same order: the given values multiplied by
-/// powers of ten; `None` if the given values are suitable, or as good as any. The symbols of `numbers` keep their
-/// values, all others are 1.
+/// powers of ten; `None` if the given values are already suitable, or if no others are better. The symbols of
+/// `numbers` keep their values, all others are 1.
 pub(crate) fn magnitudes<'g>(
     graph: &'g Graph,
     expressions: &[Expr<'g>],
@@ -26,7 +26,8 @@ pub(crate) fn magnitudes<'g>(
     let mut terms = Terms::new(graph, expressions, symbols, numbers)?;
     let given: Vec<f64> = symbols.iter().map(|&(_, value)| value).collect();
     let mut best = (terms.disorder(&given), given.clone());
-    // Each time the one step that brings most order, so that the symbol that is out of order moves, not those beside it.
+    // Each time the single step that reduces the disorder most, so that the symbol that is out of order moves, not those
+    // beside it.
     for _ in 0..=2 * given.len() {
         let (before, from) = best.clone();
         if before == 0.0 {
@@ -50,9 +51,9 @@ pub(crate) fn magnitudes<'g>(
 /// Groups of terms as functions of symbols.
 struct Terms {
     values: Evaluator,
-    /// The factors of the terms, group by group.
+    /// The numerical factors of the terms, group by group.
     factors: Vec<Vec<f64>>,
-    /// The values of the symbols after those that change.
+    /// The values of the symbols that do not change, which come after those that do.
     fixed: Vec<f64>,
 }
 
@@ -78,8 +79,8 @@ impl Terms {
         Some(Terms { values: Evaluator::new(program, Backend::Interpreter), factors, fixed })
     }
 
-    /// Σ d² of the powers of ten d by which the largest and the smallest term of a group differ more than they may; terms
-    /// that vanish do not count.
+    /// The sum Σ d² over the groups, where d is the number of powers of ten by which the largest and the smallest term
+    /// differ beyond what is allowed; terms that vanish do not count.
     fn disorder(&mut self, symbols: &[f64]) -> f64 {
         let point = [symbols, &self.fixed].concat();
         let mut values = vec![f64::NAN; self.values.program().outputs_len()];

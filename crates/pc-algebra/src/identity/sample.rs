@@ -8,14 +8,15 @@ use crate::linear_algebra::matrix::Matrix;
 /// The number of points at which an identity that the graph leaves open is tested.
 pub(crate) const TRIALS: usize = 8;
 
-/// The greatest fraction of its terms that some thousand roundings leave of a sum that vanishes identically.
+/// The greatest value, as a fraction of its terms, that some thousand roundings leave in a sum that vanishes
+/// identically.
 pub(crate) const HIDDEN: f64 = 1e-12;
 
 /// Values of symbols near which an expression is regular; symbols that are not listed are taken near 1.
 ///
-/// Nearby points are of the order of the values and of 1. If expressions have no values there, are too small for numbers, or seem to
-/// vanish, points are added at which the [commensurable](Graph::commensurable) terms of the expressions are of the same order, so
-/// that no result about a model depends on its units.
+/// Nearby points have components of the order of the values and of 1. If expressions have no values there, are too small for
+/// floating-point numbers, or seem to vanish, points are added at which the [commensurable](Graph::commensurable) terms of the
+/// expressions are of the same order, so that no result about a model depends on its units.
 #[derive(Clone, Debug, Default)]
 pub struct Neighbourhood<'g> {
     /// Symbols and their values.
@@ -23,11 +24,12 @@ pub struct Neighbourhood<'g> {
 }
 
 impl<'g> Neighbourhood<'g> {
-    /// A sum smaller than this fraction of its terms counts as rounding, even for constants of ten digits: a
-    /// sum that does not vanish is of the order of its terms.
+    /// A sum smaller than this fraction of its terms counts as a rounding error, even if its constants have
+    /// only ten digits: a sum that does not vanish is of the order of its terms.
     pub const ROUNDING: f64 = 1e-9;
 
-    /// Values of `outputs` at point number `index` of a fixed sequence near the centre (0 is the centre).
+    /// The values of `outputs` at point number `index` of a fixed sequence near the centre (number 0 is the
+    /// centre).
     pub(crate) fn sample<S: Scalar>(
         &self,
         graph: &'g Graph,
@@ -75,7 +77,7 @@ impl<'g> Neighbourhood<'g> {
     }
 
     /// The largest absolute value of the expressions at the centre and points near it where all are finite; infinity if
-    /// there are none, 0 without expressions.
+    /// there are no such points, 0 if there are no expressions.
     pub fn largest(&self, graph: &'g Graph, expressions: &[Expr<'g>]) -> f64 {
         if expressions.is_empty() {
             return 0.0;
@@ -90,7 +92,7 @@ impl<'g> Neighbourhood<'g> {
     /// there are no such points. It is 0 only if the graph folds f to 0. Σ|terms| includes terms that have
     /// cancelled inside a term.
     ///
-    /// It does not depend on units: 10⁻¹⁰ x is not zero.
+    /// The result does not depend on units: 10⁻¹⁰ x is not zero.
     ///
     /// ```
     /// # use pc_algebra::Neighbourhood;
@@ -130,8 +132,7 @@ impl<'g> Neighbourhood<'g> {
         }
     }
 
-    /// A neighbourhood in which the expressions have values, if one is found without given values of their
-    /// symbols.
+    /// A neighbourhood in which the expressions have values, if one is found without values for their symbols.
     pub fn anywhere(graph: &'g Graph, expressions: &[Expr<'g>]) -> Neighbourhood<'g> {
         let symbols = graph.symbols_of(expressions);
         let about =
@@ -148,22 +149,22 @@ impl<'g> Neighbourhood<'g> {
         known.or_else(|| usual().find(has(Weighed::is_finite))).unwrap_or_default()
     }
 
-    /// Whether an expression is zero, or at most rounding wherever it has values nearby, although the graph does
-    /// not fold it to zero.
+    /// Whether an expression is zero, or no more than a rounding error wherever it has values nearby, even
+    /// though the graph does not fold it to zero.
     pub fn vanishes(&self, graph: &'g Graph, expression: Expr<'g>) -> bool {
         if expression.constant().is_some() {
             return expression.is_zero();
         }
         let samples = self.weighed(graph, &[expression], TRIALS);
-        // A function of several pieces may be 0 on this piece only.
+        // A piecewise function may be 0 on this piece only.
         let is_zero = |value: &Weighed| value.value == 0.0 && in_pieces(graph, &[expression]);
         let is_rounding = |value: &Weighed| value.rest() <= HIDDEN && !is_zero(value);
         let vanish = |samples: &[Vec<Weighed>]| samples.iter().flatten().all(is_rounding);
         !samples.is_empty() && vanish(&samples) && vanish(&self.of_one_order(graph, &[expression], TRIALS))
     }
 
-    /// The greatest numerical rank of a matrix at nearby points; `None` if it has no values, or if these
-    /// belong to only one piece of a function.
+    /// The greatest numerical rank of a matrix at nearby points; `None` if the matrix has no values there, or
+    /// if they may belong to only one piece of a function.
     pub(crate) fn rank(&self, graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<usize> {
         let entries = matrix.nonzero_entries();
         if in_pieces(graph, &entries) {
@@ -187,14 +188,14 @@ impl<'g> Neighbourhood<'g> {
         sample.iter().all(|x| x.is_finite()).then(|| rank_of_sample(matrix, &sample))
     }
 
-    /// Values at up to `count` points where all outputs are finite.
+    /// The values of the outputs at up to `count` points where all are finite.
     pub(crate) fn samples(&self, graph: &'g Graph, outputs: &[Expr<'g>], count: usize) -> Vec<Vec<f64>> {
         let values = |sample: Vec<Weighed>| sample.into_iter().map(|x| x.value).collect();
         self.weighed(graph, outputs, count).into_iter().map(values).collect()
     }
 
-    /// Values with their weights; see [`samples`](Self::samples). Points are left out where a value is too small for a number, unless
-    /// no others are found.
+    /// The values of the outputs with their weights; see [`samples`](Self::samples). Points are left out where a value is too small
+    /// for a floating-point number, unless no others are found.
     pub(crate) fn weighed(&self, graph: &'g Graph, outputs: &[Expr<'g>], count: usize) -> Vec<Vec<Weighed>> {
         let mut found = self.beside(graph, outputs, count, Weighed::is_known);
         if found.len() < count {
@@ -206,7 +207,7 @@ impl<'g> Neighbourhood<'g> {
         found
     }
 
-    /// Values at up to `count` points near the centre at which all outputs are such numbers.
+    /// The values of the outputs at up to `count` points near the centre at which all are such numbers.
     fn beside(
         &self,
         graph: &'g Graph,
@@ -218,7 +219,7 @@ impl<'g> Neighbourhood<'g> {
         values.filter(|values| values.iter().all(|&x| is(x))).take(count).collect()
     }
 
-    /// Values at the [points of one order](Self::points_of_one_order).
+    /// The values of the outputs at the [points of one order](Self::points_of_one_order).
     fn of_one_order(&self, graph: &'g Graph, outputs: &[Expr<'g>], count: usize) -> Vec<Vec<Weighed>> {
         let value = |point: Vec<(Expr<'g>, f64)>| {
             let point: Vec<_> = point.into_iter().map(|(x, value)| (x, Weighed::from_f64(value))).collect();
@@ -230,13 +231,13 @@ impl<'g> Neighbourhood<'g> {
     }
 }
 
-/// Whether expressions contain functions of several pieces.
+/// Whether expressions contain piecewise functions.
 fn in_pieces<'g>(graph: &'g Graph, expressions: &[Expr<'g>]) -> bool {
     let symbols = graph.symbols_of(expressions);
     expressions.iter().any(|&expression| graph.applies(expression, &symbols, Function::is_piecewise))
 }
 
-/// The rank of a matrix with these values of its nonzero entries, block by block.
+/// The rank of a matrix whose nonzero entries have these values, computed block by block.
 fn rank_of_sample(matrix: &Matrix<Expr<'_>>, sample: &[Weighed]) -> usize {
     let mut numbers = sample.iter().copied();
     let row = |i| matrix.nonzero(i).zip(numbers.by_ref()).map(|((j, _), number)| (j, number)).collect();
@@ -257,7 +258,7 @@ fn rank_of_sample(matrix: &Matrix<Expr<'_>>, sample: &[Weighed]) -> usize {
     blocks.iter().map(of_block).sum()
 }
 
-/// The rank of a matrix of that many columns, by elimination with complete pivoting; rounding errors count as
+/// The rank of a matrix with that many columns, by elimination with complete pivoting; rounding errors count as
 /// zero.
 fn rank(mut rows: Vec<Vec<Weighed>>, columns: usize) -> usize {
     let mut open: Vec<usize> = (0..columns).collect();
@@ -280,7 +281,7 @@ fn rank(mut rows: Vec<Vec<Weighed>>, columns: usize) -> usize {
     total - rows.len()
 }
 
-/// splitmix64, uniform in (−1, 1).
+/// A generator of numbers uniform in (−1, 1) (splitmix64).
 struct Random(u64);
 
 impl Random {

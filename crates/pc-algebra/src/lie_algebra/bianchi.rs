@@ -9,8 +9,8 @@ impl LieAlgebra {
     /// Bianchi's type VI_h, h ≤ 0: \[X_1, X_2\] = −aX_2 − X_3, \[X_2, X_3\] = 0, \[X_3, X_1\] = X_2 + aX_3
     /// with a = √−h. Type III is VI_h with h = −1.
     ///
-    /// The constants are rational if h is minus the square of a rational; otherwise a is rounded and only
-    /// numerical questions are answered.
+    /// The constants are rational if h is minus the square of a rational; otherwise a is rounded, and only
+    /// numerical methods can be used.
     ///
     /// # Errors
     /// [`AlgebraError::BianchiParameter`] for h > 0 or NaN.
@@ -22,7 +22,7 @@ impl LieAlgebra {
     }
 
     /// Bianchi's type VII_h, h ≥ 0: \[X_1, X_2\] = −aX_2 + X_3, \[X_2, X_3\] = 0, \[X_3, X_1\] = X_2 + aX_3
-    /// with a = √h; h = 0 is se(2). Rounding of a is as in [`bianchi6`](LieAlgebra::bianchi6).
+    /// with a = √h; h = 0 is se(2). a is rounded as in [`bianchi6`](LieAlgebra::bianchi6).
     ///
     /// # Errors
     /// [`AlgebraError::BianchiParameter`] for h < 0 or NaN.
@@ -52,7 +52,7 @@ pub(crate) fn behr(a: Number, n: [i32; 3]) -> LieAlgebra {
     })
 }
 
-/// √x, exact if it is rational; `None` if it is not real.
+/// The square root √x, exact if it is rational; `None` if it is not real.
 fn root(x: Number) -> Option<Number> {
     (x.is_finite() && (x.is_zero() || !x.is_negative()))
         .then(|| x.exact_sqrt().unwrap_or_else(|| Number::Real(x.to_f64().sqrt())))

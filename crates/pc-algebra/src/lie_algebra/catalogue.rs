@@ -1,4 +1,4 @@
-//! Lie algebras with a name.
+//! Lie algebras known by name.
 
 use pc_expr::Number;
 
@@ -20,8 +20,8 @@ const fn entry(name: &'static str, description: &'static str, make: fn() -> LieA
     Entry { name, description, make }
 }
 
-/// The algebras that have a name, without sizes of families and parameters. If two have equal constants, the
-/// more common name comes first. Commutative algebras are missing: they need no name.
+/// The algebras that have a name without a size or a parameter in it. If two algebras have equal constants,
+/// the more common name comes first. Commutative algebras are not listed: they need no name.
 pub const CATALOGUE: &[Entry] = &[
     entry(
         "so3",
@@ -100,7 +100,7 @@ pub const CATALOGUE: &[Entry] = &[
 ];
 
 impl LieAlgebra {
-    /// The algebra of that name: one of the [`CATALOGUE`], a member of a family by its size (`so5`, `gl3`,
+    /// The algebra with that name: one of the [`CATALOGUE`], a member of a family by its size (`so5`, `gl3`,
     /// `heisenberg7`), `bianchi1`, or a Bianchi type with parameter (`bianchi6(-1/4)`, `bianchi7(0.25)`).
     ///
     /// # Errors
@@ -147,17 +147,17 @@ impl LieAlgebra {
     }
 }
 
-/// Greatest dimension of a Heisenberg algebra that has a name.
+/// The largest dimension of a Heisenberg algebra that can be named.
 const LARGEST_HEISENBERG: usize = 65;
 
-/// The n of `familyn`.
+/// The number n in a name of the form `familyn`.
 fn size(name: &str, family: &str) -> Option<usize> {
     let digits = name.strip_prefix(family)?;
     let plain = !digits.starts_with('0') && digits.bytes().all(|b| b.is_ascii_digit());
     plain.then(|| digits.parse().ok()).flatten()
 }
 
-/// The h of `kind(h)`, a decimal or a fraction.
+/// The number h in a name of the form `kind(h)`, a decimal or a fraction.
 fn parameter(name: &str, kind: &str) -> Option<Number> {
     let text = name.strip_prefix(kind)?.trim().strip_prefix('(')?.strip_suffix(')')?;
     let Some((num, den)) = text.split_once('/') else {

@@ -1,4 +1,4 @@
-//! The classical algebras by their size.
+//! The classical algebras of each size, and other well-known ones.
 
 use pc_expr::Number;
 
@@ -11,9 +11,9 @@ impl LieAlgebra {
         LieAlgebra::from_constants(3, |r, s, m| levi_civita(r, s, m).into())
     }
 
-    /// The rotations of ℝⁿ, dimension n(n − 1)/2. The element R_ij turns axis i towards axis j, R_ij e_i =
+    /// The rotations of ℝⁿ, of dimension n(n − 1)/2. The element R_ij turns axis i towards axis j, R_ij e_i =
     /// e_j; the basis is R_23, R_31, R_12 as in [`so3`](LieAlgebra::so3), then R_14, R_24, R_34, then R_15
-    /// and so on: that of so(n − 1) comes first. \[R_ij, R_jl\] = −R_il for different i, j, l.
+    /// and so on, so that the basis of so(n − 1) comes first. \[R_ij, R_jl\] = −R_il for different i, j, l.
     ///
     /// # Errors
     /// [`AlgebraError::TooLargeFamily`] beyond n = 12.
@@ -28,8 +28,8 @@ impl LieAlgebra {
         Ok(rotations(n))
     }
 
-    /// All n × n matrices, dimension n², with the matrices E_ij that have a single 1, row by row, as basis:
-    /// \[E_ij, E_kl\] = δ_jk E_il − δ_li E_kj.
+    /// All n × n matrices, of dimension n². The basis consists of the matrices E_ij with a single entry 1,
+    /// row by row: \[E_ij, E_kl\] = δ_jk E_il − δ_li E_kj.
     ///
     /// # Errors
     /// [`AlgebraError::TooLargeFamily`] beyond n = 8.
@@ -89,7 +89,7 @@ pub(crate) fn known(dim: usize, brackets: &[(usize, usize, usize, i32)]) -> LieA
     LieAlgebra::from_constants(dim, |r, s, m| (listed(r, s, m) - listed(s, r, m)).into())
 }
 
-/// so(n), with constants from R_ij R_kl − R_kl R_ij.
+/// The algebra so(n), with constants computed from R_ij R_kl − R_kl R_ij.
 pub(crate) fn rotations(n: usize) -> LieAlgebra {
     let planes = planes(n);
     let entry = |(i, j): (usize, usize), a: usize, b: usize| {
@@ -124,7 +124,7 @@ fn levi_civita(i: usize, j: usize, k: usize) -> i32 {
     }
 }
 
-/// The planes (i, j) of the basis R_ij of so(n), from 0.
+/// The planes (i, j) of the basis R_ij of so(n), with axes counted from 0.
 fn planes(n: usize) -> Vec<(usize, usize)> {
     let first: &[(usize, usize)] = match n {
         0 | 1 => &[],

@@ -14,8 +14,8 @@ impl LieAlgebra {
     /// A basis of the linear forms ξ with ξ([x, y]) = 0: the solutions of c_rs^m ξ_m = 0, the annihilator of
     /// \[g, g\].
     ///
-    /// They are the characters of the algebra; as functions of the momenta they are not Casimirs. Entries are
-    /// coprime integers.
+    /// They are the characters of the algebra, not Casimir functions of the momenta. Entries are coprime
+    /// integers.
     ///
     /// # Errors
     /// [`AlgebraError::NotRational`].
@@ -32,7 +32,8 @@ impl LieAlgebra {
     /// A basis of the symmetric bilinear forms B with B([x, y], z) + B(y, [x, z]) = 0: the solutions of
     /// c_rs^p B_pm + c_rm^p B_sp = 0, as k × k matrices with coprime integer entries.
     ///
-    /// The Killing form is one of them; a regular one makes coadjoint motion the same as adjoint motion.
+    /// The Killing form is one of them; if one of them is regular, coadjoint motion is equivalent to adjoint
+    /// motion.
     ///
     /// # Errors
     /// [`AlgebraError::NotRational`].
@@ -69,7 +70,7 @@ impl LieAlgebra {
     }
 }
 
-/// Number of the entry (s, m) of a symmetric matrix among those on and below the diagonal.
+/// The index of the entry (s, m) of a symmetric matrix among those on and below the diagonal.
 fn unknown(s: usize, m: usize) -> usize {
     let (low, high) = (s.min(m), s.max(m));
     high * (high + 1) / 2 + low

@@ -12,9 +12,9 @@ pub(crate) fn cyclic(a: usize, b: usize, c: usize) -> Option<(usize, usize, usiz
     rotated.into_iter().find(|&(r, s, u)| r < s && s < u)
 }
 
-/// c_rs^p c_pu^m + c_su^p c_pr^m + c_ur^p c_ps^m = 0 for r < s < u among the operators 0..k, 0 for time.
-/// `nonzero` lists the nonzero c_rs^m as (r, s, m, c_rs^m) in the order of (r, s, m), with (s, r, m) beside
-/// (r, s, m), m from 1.
+/// Checks that c_rs^p c_pu^m + c_su^p c_pr^m + c_ur^p c_ps^m = 0 for r < s < u among the operators 0..k,
+/// where 0 is time. `nonzero` lists the nonzero c_rs^m as (r, s, m, c_rs^m) in the order of (r, s, m),
+/// including both (r, s, m) and (s, r, m), with m counted from 1.
 ///
 /// # Errors
 /// [`AlgebraError::Jacobi`].
@@ -33,7 +33,7 @@ pub(crate) fn check_jacobi(k: usize, nonzero: &[(usize, usize, usize, Number)]) 
             *size = *size + Weighed::constant(first) * Weighed::constant(second);
         }
     }
-    // Rational constants give an exact 0; constants rounded to f64 a few units of rounding.
+    // Rational constants give an exact 0; constants rounded to f64 leave a few units of rounding error.
     let vanishes = |defect: Number, size: &Weighed| defect.to_f64().abs() <= 1e-12 * size.size();
     match defects.into_iter().find(|(_, (defect, size))| !vanishes(*defect, size)) {
         None => Ok(()),
@@ -49,7 +49,7 @@ mod tests {
 
     use super::*;
 
-    /// The identity as written, with all k³ coefficients.
+    /// Checks the identity as it is written, with all k³ coefficients.
     fn written_out(
         k: usize,
         c: impl Fn(usize, usize, usize) -> i64,

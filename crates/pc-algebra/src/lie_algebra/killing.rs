@@ -28,8 +28,8 @@ impl LieAlgebra {
         Ok(Matrix::from_fn(k, k, |r, s| rounded(&form[r][s])))
     }
 
-    /// Whether the Killing form is regular, which by Cartan's criterion says that the algebra is a direct
-    /// product of simple ones (none at all in dimension 0).
+    /// Whether the Killing form is regular, which by Cartan's criterion means that the algebra is a
+    /// direct product of simple algebras (of none in dimension 0).
     ///
     /// # Errors
     /// [`AlgebraError::NotRational`].

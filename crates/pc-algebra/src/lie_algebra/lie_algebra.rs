@@ -12,15 +12,15 @@ use crate::linear_algebra::matrix::Matrix;
 #[derive(Clone, Debug, PartialEq)]
 pub struct LieAlgebra {
     dim: usize,
-    /// The c_rs^m that are not 0, by (r, s, m), from 0.
+    /// The c_rs^m that are not 0, with the keys (r, s, m), counted from 0.
     nonzero: BTreeMap<(usize, usize, usize), Number>,
 }
 
 impl LieAlgebra {
-    /// The algebra with `c(r, s, m)` = c_rs^m; indices from 0 to `dim` − 1.
+    /// The algebra with `c(r, s, m)` = c_rs^m, where indices run from 0 to `dim` − 1.
     ///
     /// # Errors
-    /// [`AlgebraError::NotSkew`] and [`AlgebraError::Jacobi`], naming the indices (from 1).
+    /// [`AlgebraError::NotSkew`] and [`AlgebraError::Jacobi`], with the indices counted from 1.
     pub fn new(dim: usize, c: impl Fn(usize, usize, usize) -> Number) -> Result<LieAlgebra, AlgebraError> {
         let algebra = LieAlgebra::from_constants(dim, c);
         algebra.check_antisymmetry()?;
@@ -36,7 +36,7 @@ impl LieAlgebra {
     }
 
     /// The algebra with the c_rs^m listed as (r, s, m, c_rs^m), r < s, which are known to satisfy Jacobi's
-    /// identity; indices from 0.
+    /// identity; indices are counted from 0.
     pub(crate) fn from_upper(
         dim: usize,
         upper: impl Iterator<Item = (usize, usize, usize, Number)>,
@@ -45,11 +45,11 @@ impl LieAlgebra {
         LieAlgebra { dim, nonzero: both.collect() }
     }
 
-    /// The algebra whose brackets [X_r, X_s] = Σ value·X_m are listed as (r, s, m, value), from 0; those of
-    /// the pairs (s, r) follow, and pairs that are not listed commute.
+    /// The algebra whose brackets [X_r, X_s] = Σ value·X_m are listed as (r, s, m, value), with indices
+    /// counted from 0; those of the pairs (s, r) follow, and pairs that are not listed commute.
     ///
     /// # Errors
-    /// As [`new`](LieAlgebra::new), if the list contradicts itself.
+    /// As [`new`](LieAlgebra::new); a list that contradicts itself is not antisymmetric.
     pub fn from_brackets(
         dim: usize,
         brackets: &[(usize, usize, usize, Number)],
@@ -71,12 +71,13 @@ impl LieAlgebra {
         self.dim
     }
 
-    /// c_rs^m, indices from 0.
+    /// The structure constant c_rs^m, with indices counted from 0.
     pub fn constant(&self, r: usize, s: usize, m: usize) -> Number {
         self.nonzero.get(&(r, s, m)).copied().unwrap_or(Number::ZERO)
     }
 
-    /// The c_rs^m that are not 0, as (r, s, m, c_rs^m), indices from 0; (s, r, m) is listed beside (r, s, m).
+    /// The c_rs^m that are not 0, as (r, s, m, c_rs^m), with indices counted from 0; both (r, s, m) and (s,
+    /// r, m) are listed.
     pub fn nonzero(&self) -> impl Iterator<Item = (usize, usize, usize, Number)> + '_ {
         self.nonzero.iter().map(|(&(r, s, m), &c)| (r, s, m, c))
     }
@@ -90,7 +91,8 @@ impl LieAlgebra {
         bracket
     }
 
-    /// The matrix of ad x = [x, ·], entry (m, s) c_rs^m x_r; `x` has length [`dim`](LieAlgebra::dim).
+    /// The matrix of ad x = [x, ·], whose entry (m, s) is c_rs^m x_r; `x` has length
+    /// [`dim`](LieAlgebra::dim).
     ///
     /// ```
     /// # use pc_algebra::{LieAlgebra, Matrix};
@@ -105,9 +107,9 @@ impl LieAlgebra {
         ad
     }
 
-    /// The matrix −(ad x)ᵀ of the coadjoint action on covectors, entry (s, m) −c_rs^m x_r.
+    /// The matrix −(ad x)ᵀ of the coadjoint action on covectors, whose entry (s, m) is −c_rs^m x_r.
     ///
-    /// The brackets of (9) are v_s = c_rs^m η_r p_m: v = −coad(η) p.
+    /// The bracket terms in (9) are v_s = c_rs^m η_r p_m, that is, v = −coad(η) p.
     pub fn coad<T: Copy + Into<Number>>(&self, x: &[T]) -> Matrix<Number> {
         self.ad(x).transpose().map(|entry| -entry)
     }

@@ -11,11 +11,13 @@ use crate::linear_algebra::echelon::Echelon;
 use crate::linear_algebra::matrix::Matrix;
 
 impl LieAlgebra {
-    /// The algebra with a basis of n × n matrices X_s and the commutator X_r X_s − X_s X_r as bracket.
+    /// The algebra that has n × n matrices X_s as its basis and the commutator X_r X_s − X_s X_r as its
+    /// bracket.
     ///
     /// # Errors
-    /// [`AlgebraError::DependentMatrices`] and [`AlgebraError::NotMatrixAlgebra`], naming the matrices;
-    /// [`AlgebraError::Shape`], [`AlgebraError::IrrationalEntry`], [`AlgebraError::TooLarge`].
+    /// [`AlgebraError::DependentMatrices`] and [`AlgebraError::NotMatrixAlgebra`], with the numbers of
+    /// the matrices; [`AlgebraError::Shape`], [`AlgebraError::IrrationalEntry`],
+    /// [`AlgebraError::TooLarge`].
     ///
     /// ```
     /// # use pc_algebra::{LieAlgebra, Matrix};
@@ -54,7 +56,7 @@ fn commutator(x: &[Vec<BigRational>], y: &[Vec<BigRational>]) -> Vec<Vec<BigRati
     (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
 }
 
-/// Coordinates of matrices in a basis: the echelon form of the rows X_s | e_s.
+/// Computes the coordinates of matrices in a basis, from the echelon form of the rows X_s | e_s.
 struct Coordinates {
     echelon: Echelon,
     entries: usize,
@@ -74,7 +76,7 @@ impl Coordinates {
         Ok(Coordinates { echelon, entries })
     }
 
-    /// The coordinates of a matrix, if it is in the span.
+    /// The coordinates of a matrix, if it is in the span of the basis.
     fn of(&self, matrix: &[Vec<BigRational>]) -> Option<Vec<BigRational>> {
         let mut row = matrix.concat();
         row.resize(self.echelon.columns(), BigRational::zero());

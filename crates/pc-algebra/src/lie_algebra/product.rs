@@ -1,4 +1,4 @@
-//! Direct products and other bases.
+//! Direct products and changes of basis.
 
 use num_rational::BigRational;
 use num_traits::Zero;
@@ -12,8 +12,8 @@ use crate::linear_algebra::echelon::inverse;
 use crate::linear_algebra::matrix::Matrix;
 
 impl LieAlgebra {
-    /// The direct product g × h: the basis of g, then that of h, and every \[x, y\] with x in g and y in h is
-    /// 0.
+    /// The direct product g × h. Its basis is that of g, then that of h, and every \[x, y\] with x in g and y
+    /// in h is 0.
     ///
     /// ```
     /// # use pc_algebra::LieAlgebra;
@@ -31,7 +31,7 @@ impl LieAlgebra {
         })
     }
 
-    /// The algebra in the basis Y_s = p_rs X_r, `p` k × k: c'_rs^m = (p⁻¹)_mu p_ir p_js c_ij^u.
+    /// The algebra in the basis Y_s = p_rs X_r, where `p` is k × k: c'_rs^m = (p⁻¹)_mu p_ir p_js c_ij^u.
     ///
     /// # Errors
     /// [`AlgebraError::SingularBasis`]; [`AlgebraError::Shape`]; [`AlgebraError::NotRational`],

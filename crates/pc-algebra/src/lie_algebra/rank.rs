@@ -6,7 +6,7 @@ use crate::error::AlgebraError;
 use crate::lie_algebra::lie_algebra::LieAlgebra;
 use crate::linear_algebra::matrix::Matrix;
 
-/// The number of random points at which a rank is computed; the largest counts.
+/// The number of random points at which a rank is computed; the largest result is taken.
 const POINTS: u64 = 2;
 
 impl LieAlgebra {
@@ -14,8 +14,8 @@ impl LieAlgebra {
     /// x for almost all x.
     ///
     /// That multiplicity is k − rank (ad x)^p for any p ≥ k. It is computed modulo the prime 2⁶¹ − 1 at two
-    /// fixed pseudo-random points x; nothing is rounded. The rank of a matrix can only fall at a special
-    /// point and modulo a prime, so the result is never too small. By Schwartz and Zippel it is too large
+    /// fixed pseudo-random points x, without rounding. At a special point or modulo a prime the rank of a
+    /// matrix can only be lower, so the result is never too small. By Schwartz and Zippel it is too large
     /// with a probability below 2k²/2⁶¹ at each point, unless the prime divides all coefficients of a minor
     /// of (ad x)^p.
     ///
@@ -73,8 +73,8 @@ impl LieAlgebra {
     }
 }
 
-/// The k × k matrix to whose entry (i, j) each constant c_rs^m adds c_rs^m·y, where (i, j, y) = `place`(r, s,
-/// m).
+/// The k × k matrix that is the sum of contributions of the constants: c_rs^m adds c_rs^m·y to the entry (i,
+/// j), where (i, j, y) = `place`(r, s, m).
 fn contraction(
     k: usize,
     c: &[(usize, usize, usize, Residue)],

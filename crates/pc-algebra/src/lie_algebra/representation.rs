@@ -1,4 +1,4 @@
-//! Representations of a Lie algebra and the semidirect products they make.
+//! Representations of a Lie algebra, and the semidirect products made from them.
 
 use num_rational::BigRational;
 use num_traits::Zero;
@@ -20,10 +20,10 @@ pub struct Representation {
 }
 
 impl Representation {
-    /// The representation with ρ(X_s) = `matrices`\[s − 1\], all square of size `dim`.
+    /// The representation with ρ(X_s) = `matrices`\[s − 1\], all of which are square of size `dim`.
     ///
     /// # Errors
-    /// [`AlgebraError::NotRepresentation`] naming the pair; [`AlgebraError::Shape`];
+    /// [`AlgebraError::NotRepresentation`] with the pair of operators; [`AlgebraError::Shape`];
     /// [`AlgebraError::NotRational`] and [`AlgebraError::IrrationalEntry`].
     pub fn new(
         algebra: LieAlgebra,
@@ -48,7 +48,8 @@ impl Representation {
         Representation { algebra: algebra.clone(), dim: k, matrices }
     }
 
-    /// The dual representation −ρ(x)ᵀ on V*; of the adjoint one, the coadjoint.
+    /// The dual representation −ρ(x)ᵀ on V*; the dual of the adjoint representation is the coadjoint
+    /// one.
     #[must_use]
     pub fn dual(&self) -> Representation {
         let matrices = self.matrices.iter().map(|rho| rho.transpose().map(|entry| -entry)).collect();
@@ -68,7 +69,7 @@ impl Representation {
     /// ρ(X_s), s from 0; n × n.
     ///
     /// # Panics
-    /// If s is not below the dimension of the algebra.
+    /// If s is not less than the dimension of the algebra.
     pub fn matrix(&self, s: usize) -> &Matrix<Number> {
         &self.matrices[s]
     }

@@ -36,7 +36,8 @@ impl LieAlgebra {
         Ok(Subspace::of_exact(k, Echelon::of(k, equations).null_space()))
     }
 
-    /// g ⊃ [g, g] ⊃ [[g, g], [g, g]] ⊃ …, as long as it decreases; g is the first entry.
+    /// The derived series g ⊃ [g, g] ⊃ [[g, g], [g, g]] ⊃ …, as long as it decreases; g is the first
+    /// entry.
     ///
     /// # Errors
     /// [`AlgebraError::NotRational`].
@@ -52,7 +53,8 @@ impl LieAlgebra {
         Ok(decreasing(self.dim(), |h| product(&c, h, h)))
     }
 
-    /// g ⊃ [g, g] ⊃ [g, [g, g]] ⊃ …, as long as it decreases; g is the first entry.
+    /// The lower central series g ⊃ [g, g] ⊃ [g, [g, g]] ⊃ …, as long as it decreases; g is the first
+    /// entry.
     ///
     /// # Errors
     /// [`AlgebraError::NotRational`].
@@ -81,7 +83,8 @@ impl LieAlgebra {
     /// Whether [h, h] ⊂ h.
     ///
     /// # Errors
-    /// [`AlgebraError::NotRational`]; [`AlgebraError::Shape`] if h is in a space of another dimension.
+    /// [`AlgebraError::NotRational`]; [`AlgebraError::Shape`] if h lies in a space of another
+    /// dimension.
     pub fn is_subalgebra(&self, h: &Subspace) -> Result<bool, AlgebraError> {
         shape("a vector of the subspace", h.ambient(), self.dim())?;
         Ok(product(&self.exact()?, h, h).is_within(h))
@@ -90,7 +93,8 @@ impl LieAlgebra {
     /// Whether [g, h] ⊂ h.
     ///
     /// # Errors
-    /// [`AlgebraError::NotRational`]; [`AlgebraError::Shape`] if h is in a space of another dimension.
+    /// [`AlgebraError::NotRational`]; [`AlgebraError::Shape`] if h lies in a space of another
+    /// dimension.
     ///
     /// ```
     /// # use pc_algebra::{LieAlgebra, Subspace};
@@ -111,7 +115,7 @@ fn product(c: &ExactConstants, u: &Subspace, v: &Subspace) -> Subspace {
     Subspace::of_exact(c.dim(), pairs.map(|(x, y)| c.bracket(x, y)))
 }
 
-/// g, f(g), f(f(g)), … while the dimension decreases.
+/// The subspaces g, f(g), f(f(g)), …, as long as the dimension decreases.
 fn decreasing(dim: usize, f: impl Fn(&Subspace) -> Subspace) -> Vec<Subspace> {
     let whole = Subspace::whole(dim);
     std::iter::successors(Some(whole), |h| Some(f(h)).filter(|next| next.dim() < h.dim())).collect()

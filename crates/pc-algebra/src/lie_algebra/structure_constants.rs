@@ -1,8 +1,8 @@
 //! Structure constants as rationals of any size.
 //!
-//! [`Number`] holds numerators and denominators up to 2⁵³ and rounds beyond; elimination soon leaves that
-//! range. Exact properties of an algebra are therefore computed with [`BigRational`] and converted back to
-//! [`Number`] at the end.
+//! [`Number`] holds numerators and denominators up to 2⁵³ and rounds beyond that; elimination soon exceeds
+//! this range. Exact properties of an algebra are therefore computed with [`BigRational`] and converted
+//! back to [`Number`] at the end.
 
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
@@ -15,7 +15,7 @@ use crate::linear_algebra::matrix::Matrix;
 /// Largest numerator and denominator of an exact [`Number`].
 const LARGEST: i64 = 1 << 53;
 
-/// `value` as a rational; `None` for a rounded real.
+/// `value` as a rational number; `None` for a rounded real number.
 pub(crate) fn exact(value: Number) -> Option<BigRational> {
     match value {
         Number::Rational { num, den } => Some(BigRational::new(num.into(), den.into())),
@@ -34,12 +34,13 @@ pub(crate) fn small(value: &BigRational) -> Option<Number> {
     (num.abs() <= LARGEST && den <= LARGEST).then(|| Number::ratio(num, den))
 }
 
-/// The number nearest to `value`, equal to it if it is small.
+/// The number nearest to `value`, equal to it if its numerator and denominator are small enough.
 pub(crate) fn rounded(value: &BigRational) -> Number {
     small(value).unwrap_or_else(|| Number::Real(value.to_f64().unwrap_or(f64::NAN)))
 }
 
-/// A multiple of `vector` with integer entries without a common factor, the first nonzero one positive.
+/// A multiple of `vector` with integer entries that have no common factor and whose first nonzero entry is
+/// positive.
 pub(crate) fn primitive(vector: &[BigRational]) -> Vec<BigRational> {
     let Some(first) = vector.iter().find(|x| !x.is_zero()) else { return vector.to_vec() };
     let scale = vector.iter().filter(|x| !x.is_zero()).fold(first.abs(), |g, x| common_divisor(&g, x));
@@ -47,7 +48,7 @@ pub(crate) fn primitive(vector: &[BigRational]) -> Vec<BigRational> {
     vector.iter().map(|x| x / &scale).collect()
 }
 
-/// The greatest rational of which both are integer multiples, by Euclid's algorithm.
+/// The greatest rational number of which both are integer multiples, by Euclid's algorithm.
 fn common_divisor(a: &BigRational, b: &BigRational) -> BigRational {
     let (mut a, mut b) = (a.abs(), b.abs());
     while !b.is_zero() {
@@ -60,7 +61,7 @@ fn common_divisor(a: &BigRational, b: &BigRational) -> BigRational {
 /// The entries of `matrix` as rationals.
 ///
 /// # Errors
-/// [`AlgebraError::IrrationalEntry`] naming the first entry that is not rational.
+/// [`AlgebraError::IrrationalEntry`] with the first entry that is not rational.
 pub(crate) fn exact_matrix(
     what: &'static str,
     matrix: &Matrix<Number>,
@@ -79,7 +80,7 @@ pub(crate) fn exact_matrix(
 /// The structure constants that are not 0.
 pub(crate) struct ExactConstants {
     dim: usize,
-    /// The (m, c_rs^m) at r·k + s, indices from 0.
+    /// The pairs (m, c_rs^m) at index r·k + s; r, s and m are counted from 0.
     pairs: Vec<Vec<(usize, BigRational)>>,
 }
 
@@ -88,7 +89,7 @@ impl ExactConstants {
         self.dim
     }
 
-    /// All (r, s, m, c_rs^m), indices from 0.
+    /// All (r, s, m, c_rs^m), with indices counted from 0.
     pub(crate) fn nonzero(&self) -> impl Iterator<Item = (usize, usize, usize, &BigRational)> {
         let k = self.dim;
         let pairs = self.pairs.iter().enumerate();
@@ -123,7 +124,7 @@ impl LieAlgebra {
     /// The structure constants as rationals of any size.
     ///
     /// # Errors
-    /// [`AlgebraError::NotRational`] naming the first constant that is a rounded real.
+    /// [`AlgebraError::NotRational`] with the first constant that is a rounded real number.
     pub(crate) fn exact(&self) -> Result<ExactConstants, AlgebraError> {
         let mut pairs = vec![Vec::new(); self.dim() * self.dim()];
         for (r, s, m, value) in self.nonzero() {
@@ -141,7 +142,7 @@ impl LieAlgebra {
     /// The algebra with rational constants that are known to satisfy Jacobi's identity.
     ///
     /// # Errors
-    /// [`AlgebraError::TooLarge`] naming the first that no [`Number`] can hold exactly.
+    /// [`AlgebraError::TooLarge`] with the first constant that no [`Number`] can hold exactly.
     pub(crate) fn from_exact(
         dim: usize,
         c: impl Fn(usize, usize, usize) -> BigRational,

@@ -8,7 +8,7 @@ use crate::frame::frame::shape;
 use crate::lie_algebra::structure_constants::{exact, primitive, rounded};
 use crate::linear_algebra::echelon::Echelon;
 
-/// A linear subspace of ℚ^k, kept as its reduced row echelon form, so that equal subspaces compare equal.
+/// A linear subspace of ℚ^k, stored in reduced row echelon form, so that equal subspaces compare equal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Subspace {
     echelon: Echelon,
@@ -62,7 +62,7 @@ impl Subspace {
         self.echelon.rank()
     }
 
-    /// Dimension k of the space around it.
+    /// Dimension k of the ambient space.
     pub fn ambient(&self) -> usize {
         self.echelon.columns()
     }

@@ -5,7 +5,7 @@ use pc_expr::{Expr, Folding, Graph};
 use crate::linear_algebra::matrix::Matrix;
 
 /// The coefficients f_s and the rest f_0 of an expression f = f_s z_s + f_0 that is affine in the `symbols`
-/// z; `None` for one that is not.
+/// z; `None` if it is not affine.
 ///
 /// |z|, max(z, 0) and the sign of z are not affine, though their second derivatives vanish.
 ///
@@ -40,7 +40,7 @@ pub struct Quadratic<'g> {
     pub constant: Expr<'g>,
 }
 
-/// The parts of an expression that is quadratic in the `symbols` z; `None` for one that is not.
+/// The parts of an expression that is quadratic in the `symbols` z; `None` if it is not quadratic.
 ///
 /// ```
 /// # use pc_algebra::quadratic;
@@ -68,7 +68,7 @@ pub fn quadratic<'g>(graph: &'g Graph, value: Expr<'g>, symbols: &[Expr<'g>]) ->
 }
 
 /// The derivatives and the value at z = 0, if they are defined: an expression independent of z may still
-/// contain quotients by z.
+/// contain divisions by z.
 fn at_zero<'g>(
     graph: &'g Graph,
     derivatives: &[Expr<'g>],
@@ -82,8 +82,8 @@ fn at_zero<'g>(
     defined.then_some((parts, value))
 }
 
-/// Whether derivatives determine the value, up to rounding: true for functions without corners, jumps
-/// and poles, beyond which they might continue differently.
+/// Whether derivatives determine the value, up to rounding errors: true for functions without corners,
+/// jumps and poles, beyond which a function might continue differently.
 fn smooth<'g>(graph: &'g Graph, value: Expr<'g>, symbols: &[Expr<'g>]) -> bool {
     !graph.applies(value, symbols, |function| !function.is_smooth()) && !graph.divides_by(value, symbols)
 }
@@ -94,7 +94,7 @@ fn depend<'g>(graph: &'g Graph, values: &[Expr<'g>], symbols: &[Expr<'g>]) -> bo
     values.iter().any(|value| written.iter().any(|&symbol| value.depends_on(symbol)))
 }
 
-/// Whether an expression is zero by its value, even in a graph that merges by structure only.
+/// Whether the value of an expression is zero, even in a graph that merges expressions by structure only.
 fn vanishes<'g>(graph: &'g Graph, x: Expr<'g>) -> bool {
     if x.is_zero() || graph.folding() == Folding::ByValue {
         return x.is_zero();
@@ -147,7 +147,7 @@ mod tests {
         }
     }
 
-    /// In another order of multiplication they differ in the last digits.
+    /// In another order of multiplication the coefficients differ in the last digits.
     #[test]
     fn rounded_coefficients_do_not_hide_a_polynomial() {
         let graph = Graph::new();

@@ -1,12 +1,12 @@
-//! The block triangular form of a square matrix, from its zeros alone.
+//! The block triangular form of a square matrix, found from its zeros alone.
 //!
 //! Rows are matched with columns; the strongly connected components of the resulting dependency graph are the blocks
 //! (I. S. Duff, A. M. Erisman, J. K. Reid, *Direct Methods for Sparse Matrices*, 2017, ch. 6). The determinant is the
-//! product of those of the blocks, so each block is regular wherever the matrix is.
+//! product of the determinants of the blocks, so each block is regular wherever the matrix is.
 
 /// The rows and columns of the diagonal blocks, such that the rows of each block have entries only in its own
-/// columns and in those of earlier blocks; `entries` are the columns of the entries of each row. `None` if no
-/// rows and columns can be matched.
+/// columns and in those of earlier blocks; `entries` lists, for each row, the columns of its entries. `None` if
+/// rows and columns cannot be matched.
 pub(crate) fn block_triangular(entries: &[Vec<usize>]) -> Option<Vec<(Vec<usize>, Vec<usize>)>> {
     let n = entries.len();
     let mut row_of = vec![None; n];
@@ -45,7 +45,7 @@ fn is_matched(row: usize, entries: &[Vec<usize>], tried: &mut [bool], row_of: &m
     false
 }
 
-/// The strongly connected components, each after all that can be reached from it (R. Tarjan, 1972).
+/// The strongly connected components, each after all others that can be reached from it (R. Tarjan, 1972).
 fn components(next: &[Vec<usize>]) -> Vec<Vec<usize>> {
     let mut search = Search {
         next,
@@ -65,9 +65,9 @@ fn components(next: &[Vec<usize>]) -> Vec<Vec<usize>> {
 
 struct Search<'a> {
     next: &'a [Vec<usize>],
-    /// The order in which nodes are reached.
+    /// The number of each node in the order in which nodes are reached.
     number: Vec<Option<usize>>,
-    /// The lowest node of the path that each one reaches.
+    /// The lowest number of a node on the path that can be reached from each node.
     low: Vec<usize>,
     path: Vec<usize>,
     found: Vec<Vec<usize>>,

@@ -3,7 +3,8 @@
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 
-/// Independent rows in reduced echelon form: pivots are 1, alone in their column, in increasing columns.
+/// Independent rows in reduced echelon form: each pivot is 1, is the only nonzero entry in its column,
+/// and is to the right of the pivots above it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Echelon {
     columns: usize,
@@ -26,7 +27,7 @@ impl Echelon {
         echelon
     }
 
-    /// Adds a row to the span. Returns whether it was outside.
+    /// Adds a row to the span. Returns whether the row was outside the span.
     pub(crate) fn insert(&mut self, mut row: Vec<BigRational>) -> bool {
         self.reduce(&mut row);
         let Some(pivot) = row.iter().position(|x| !x.is_zero()) else { return false };
@@ -43,7 +44,7 @@ impl Echelon {
         true
     }
 
-    /// Subtracts from `row` its part in the span, so that it is 0 in every pivot column.
+    /// Subtracts from `row` an element of the span, so that the rest is 0 in every pivot column.
     pub(crate) fn reduce(&self, row: &mut [BigRational]) {
         for (own, &pivot) in self.rows.iter().zip(&self.pivots) {
             subtract(row, own, pivot);
@@ -74,7 +75,7 @@ impl Echelon {
         &self.pivots
     }
 
-    /// A basis of the vectors whose product with every row is 0: one for each column without pivot.
+    /// A basis of the vectors whose product with every row is 0: one for each column without a pivot.
     pub(crate) fn null_space(&self) -> Vec<Vec<BigRational>> {
         (0..self.columns)
             .filter(|free| !self.pivots.contains(free))
@@ -90,7 +91,8 @@ impl Echelon {
     }
 }
 
-/// row ← row − row_p·other with p = `pivot`, where other_p = 1 and other is 0 before.
+/// Sets row ← row − row_p·other with p = `pivot`, where other_p = 1 and the entries of other before p
+/// are 0.
 fn subtract(row: &mut [BigRational], other: &[BigRational], pivot: usize) {
     if row[pivot].is_zero() {
         return;
@@ -103,7 +105,7 @@ fn subtract(row: &mut [BigRational], other: &[BigRational], pivot: usize) {
     }
 }
 
-/// The inverse of a square matrix, by echelon form of `matrix | 1`; `None` if it is singular.
+/// The inverse of a square matrix, from the echelon form of `matrix | 1`; `None` if it is singular.
 pub(crate) fn inverse(matrix: &[Vec<BigRational>]) -> Option<Vec<Vec<BigRational>>> {
     let n = matrix.len();
     let unit = |i: usize| (0..n).map(move |j| if i == j { BigRational::one() } else { BigRational::zero() });

@@ -1,4 +1,4 @@
-//! Inverses of matrices of expressions that are singular only where the matrix is.
+//! Inverses of matrices of expressions; an inverse is singular only where the matrix is.
 
 use pc_expr::{Expr, Graph, Number, independent_blocks};
 
@@ -8,22 +8,23 @@ use crate::linear_algebra::matrix::Matrix;
 
 /// Blocks up to this size are inverted by cofactors, larger ones by elimination.
 const COFACTORS: usize = 4;
-/// Pivots down to this fraction of the largest are acceptable: rounding errors grow at most tenfold.
+/// Pivots of at least this fraction of the largest are acceptable: rounding errors grow at most tenfold.
 const READILY: f64 = 0.1;
-/// Constants smaller than this fraction of their row are not pivots: rounding errors would grow a
-/// thousandfold.
+/// Constants smaller than this fraction of the largest entry in their row are not used as pivots: rounding
+/// errors would grow a thousandfold.
 const TINY: f64 = 1e-3;
-/// A difference of rounded constants that is smaller than this fraction of them, some hundred roundings, is
-/// zero.
+/// A difference of rounded constants that is smaller than this fraction of them, some hundred rounding
+/// errors, counts as zero.
 const ROUNDING: f64 = 1e-13;
 
 /// The inverse of a square matrix; `None` if its determinant is identically zero.
 ///
 /// Its entries are regular wherever the matrix is. Constant pivots that are not small relative to their row
-/// are eliminated first. The remaining matrix is solved block by block of its block triangular form, small
-/// blocks by cofactors over their determinant, larger ones by orthogonalisation: no divisor vanishes where
-/// the matrix is regular, at any state. Constants that cancel up to rounding count as zero; so does a divisor
-/// that is at most rounding at random points, even if the graph does not fold it.
+/// are eliminated first. The remaining matrix is solved block by block, in block triangular form: small
+/// blocks by cofactors over their determinant, larger ones by orthogonalisation. No divisor vanishes at any
+/// state where the matrix is regular. Constants that cancel up to rounding errors count as zero; so does a
+/// divisor that is no more than a rounding error at random points, even if the graph does not fold it to
+/// zero.
 ///
 /// Uncoupled rows and columns are inverted separately.
 pub fn inverse<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Matrix<Expr<'g>>> {
@@ -85,7 +86,7 @@ fn inverse_of_block<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<M
     Some(result)
 }
 
-/// The determinant of a square matrix; `None` for more than four rows, since it is then not a short
+/// The determinant of a square matrix; `None` for more than four rows, since the determinant is then a long
 /// expression.
 pub fn determinant<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Expr<'g>> {
     let all: Vec<usize> = (0..matrix.rows()).collect();
@@ -119,7 +120,7 @@ impl<'g> Elimination<'g> {
         self.open_rows.iter().flat_map(|&i| self.open_columns.iter().map(move |&j| (i, j)))
     }
 
-    /// The first constant that is comparable to the largest entry of its row.
+    /// The position of the first constant that is comparable to the largest entry of its row.
     fn constant_pivot(&self) -> Option<(usize, usize)> {
         let is_constant = |&at: &(usize, usize)| self.left[at].constant().is_some_and(|c| !c.is_zero());
         let constants: Vec<(usize, usize)> = self.open().filter(is_constant).collect();
@@ -153,7 +154,7 @@ impl<'g> Elimination<'g> {
     }
 
     /// The size of each entry relative to the largest remaining one in its row. An expression is evaluated at
-    /// one point, and counts as one if it has no value there.
+    /// one point, and counts as 1 if it has no value there.
     fn shares(&self) -> Matrix<f64> {
         let open: Vec<(usize, usize)> = self.open().collect();
         let entries: Vec<Expr<'g>> = open.iter().map(|&at| self.left[at]).collect();
@@ -196,7 +197,7 @@ impl<'g> Elimination<'g> {
     }
 }
 
-/// x − y, and 0 for constants that differ only by rounding.
+/// The difference x − y, or 0 for constants that differ only by rounding errors.
 fn difference<'g>(graph: &'g Graph, x: Expr<'g>, y: Expr<'g>) -> Expr<'g> {
     let difference = graph.sum([x, -y]);
     let (Some(Number::Real(rest)), Some(x)) = (difference.constant(), x.constant()) else {
@@ -223,9 +224,9 @@ fn cofactor_inverse<'g>(graph: &'g Graph, a: &Matrix<Expr<'g>>) -> Option<Matrix
     }))
 }
 
-/// A⁻¹ = U⁻¹ D⁻¹ Qᵀ with A = Q U, the columns of Q orthogonal, D = QᵀQ and U unit upper triangular (Gram and
-/// Schmidt, without roots). The D_j are positive wherever A is regular; the rounding error is that of the
-/// square of its condition.
+/// The inverse A⁻¹ = U⁻¹ D⁻¹ Qᵀ, where A = Q U, the columns of Q are orthogonal, D = QᵀQ and U is unit upper
+/// triangular (Gram–Schmidt without square roots). The D_j are positive wherever A is regular; the rounding
+/// error is in proportion to the square of the condition number of A.
 fn orthogonal_inverse<'g>(graph: &'g Graph, a: &Matrix<Expr<'g>>) -> Option<Matrix<Expr<'g>>> {
     let m = a.rows();
     let dot = |x: &[Expr<'g>], y: &[Expr<'g>]| graph.dot(x.iter().copied(), y.iter().copied());
@@ -258,7 +259,7 @@ fn orthogonal_inverse<'g>(graph: &'g Graph, a: &Matrix<Expr<'g>>) -> Option<Matr
     Some(inverse)
 }
 
-/// Determinant of the rows and columns listed, by expansion along the first row.
+/// The determinant of the listed rows and columns, by expansion along the first row.
 fn minor<'g>(graph: &'g Graph, a: &Matrix<Expr<'g>>, rows: &[usize], columns: &[usize]) -> Expr<'g> {
     let Some((&row, rest)) = rows.split_first() else { return Expr::ONE };
     graph.sum(columns.iter().enumerate().filter(|&(_, &column)| !a[(row, column)].is_zero()).map(
@@ -353,7 +354,7 @@ mod tests {
         assert!(inverse(&graph, &singular).is_none());
     }
 
-    /// x' = w − u, for any rounding error of cos(π/2).
+    /// The frame is x' = w − u, whatever the rounding error of cos(π/2).
     #[test]
     fn a_rounding_error_is_not_a_pivot() {
         let graph = Graph::new();
@@ -381,7 +382,8 @@ mod tests {
         }
     }
 
-    /// Small constants are pivots if the row has nothing larger, as with a small unit of a quasi-velocity.
+    /// Small constants are pivots if the row has nothing larger, as happens when a quasi-velocity has a small
+    /// unit.
     #[test]
     fn a_small_unit_is_not_a_rounding_error() {
         let graph = Graph::new();

@@ -10,8 +10,8 @@ use pc_expr::{Expr, Graph, Number, Residue};
 pub trait MatrixEntry: Copy + PartialEq {
     /// 0
     const ZERO: Self;
-    /// Whether a matrix stores only its nonzero entries: frames and masses of n independent bodies have n²
-    /// expressions, of which about n are not zero.
+    /// Whether a matrix stores only its nonzero entries: the frame and the mass matrix of n independent bodies
+    /// have n² expressions, of which about n are not zero.
     const IS_SPARSE: bool;
     /// Whether the entry is left out of a sparse matrix.
     fn is_nothing(&self) -> bool;
@@ -43,9 +43,10 @@ held_whole!(f64: 0.0, Number: Number::ZERO, Residue: Residue::ZERO);
 pub struct Matrix<T> {
     rows: usize,
     columns: usize,
-    /// All entries, row after row, in a dense matrix.
+    /// All entries, row by row, in a dense matrix.
     all: Vec<T>,
-    /// The stored entries of each row of a sparse matrix: column and entry, by ascending columns.
+    /// The stored entries of each row of a sparse matrix, as pairs of column and entry, in ascending order of
+    /// columns.
     held: Vec<Vec<(usize, T)>>,
     zero: T,
 }
@@ -64,8 +65,8 @@ impl<T: MatrixEntry> Matrix<T> {
         matrix
     }
 
-    /// The matrix of `columns` columns with these entries in each row, given with their columns in ascending
-    /// order; the others are zero.
+    /// The matrix with `columns` columns and these entries in each row, given with their columns in ascending
+    /// order; other entries are zero.
     ///
     /// # Panics
     /// If a column is out of range.
@@ -93,7 +94,7 @@ impl<T: MatrixEntry> Matrix<T> {
         self.columns
     }
 
-    /// Row `i`, zeros included.
+    /// Row `i`, including zeros.
     pub fn row(&self, i: usize) -> Cow<'_, [T]> {
         if !T::IS_SPARSE {
             return Cow::Borrowed(&self.all[i * self.columns..(i + 1) * self.columns]);
@@ -116,7 +117,7 @@ impl<T: MatrixEntry> Matrix<T> {
         (0..self.rows).map(|i| self.nonzero(i).collect()).collect()
     }
 
-    /// The nonzero entries, row after row.
+    /// The nonzero entries, row by row.
     pub fn nonzero_entries(&self) -> Vec<T> {
         (0..self.rows).flat_map(|i| self.nonzero(i)).map(|(_, entry)| entry).collect()
     }
@@ -124,7 +125,7 @@ impl<T: MatrixEntry> Matrix<T> {
     /// The matrix with its [entries that are not zero](Matrix::nonzero_entries) replaced, each by one of `entries`.
     ///
     /// # Panics
-    /// If there are fewer.
+    /// If there are fewer `entries` than nonzero entries.
     #[must_use]
     pub fn with_nonzero_entries(&self, entries: &[T]) -> Matrix<T> {
         let mut next = 0;
@@ -141,7 +142,7 @@ impl<T: MatrixEntry> Matrix<T> {
         (0..self.rows).map(move |i| self[(i, j)])
     }
 
-    /// All entries, row after row, zeros included.
+    /// All entries, row by row, including zeros.
     pub fn entries(&self) -> Cow<'_, [T]> {
         if !T::IS_SPARSE {
             return Cow::Borrowed(&self.all);
@@ -168,7 +169,7 @@ impl<T: MatrixEntry> Matrix<T> {
         Matrix::from_rows(self.rows, columns)
     }
 
-    /// The matrix with every entry passed through `f`, which keeps 0.
+    /// The matrix with `f` applied to every entry; `f` must map 0 to 0.
     #[must_use]
     pub fn map<S: MatrixEntry>(&self, mut f: impl FnMut(T) -> S) -> Matrix<S> {
         if !T::IS_SPARSE {
@@ -216,16 +217,16 @@ impl<T: MatrixEntry> IndexMut<(usize, usize)> for Matrix<T> {
 }
 
 impl<'g> Matrix<Expr<'g>> {
-    /// The identity of n rows.
+    /// The identity matrix with n rows.
     pub fn identity(n: usize) -> Matrix<Expr<'g>> {
         Matrix::from_rows(n, (0..n).map(|i| vec![(i, Expr::ONE)]).collect())
     }
 
-    /// The product with another matrix of as many rows as this one has columns, at the cost of its nonzero
-    /// terms.
+    /// The product with another matrix, which must have as many rows as this one has columns; only nonzero
+    /// terms cost operations.
     ///
     /// # Panics
-    /// If it has fewer.
+    /// If it has fewer rows.
     pub fn times(&self, graph: &'g Graph, other: &Matrix<Expr<'g>>) -> Matrix<Expr<'g>> {
         let row = |i: usize| {
             let mut terms: BTreeMap<usize, Vec<Expr<'g>>> = BTreeMap::new();

@@ -1,4 +1,4 @@
-//! Places where velocities and the quasi-velocities defined by them no longer determine each other.
+//! States where velocities and the quasi-velocities defined by them no longer determine each other.
 
 use pc_algebra::Matrix;
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
@@ -7,34 +7,35 @@ use crate::error::MechError;
 use crate::numeric::singular_values::SingularValues;
 use crate::system::system::System;
 
-/// A fraction of the velocities this small is rounding: the motion is the same without it.
+/// A velocity this small relative to the others is treated as rounding error: the motion is the same without
+/// it.
 const AT_REST: f64 = 1e-9;
 
-/// The distance from either end of a step, as a fraction of it, at which the slope of the
-/// determinant is estimated.
+/// The distance from either end of a step, as a fraction of its length, at which the slope of the determinant
+/// is estimated.
 const SLOPE: f64 = 1e-4;
 
-/// A determinant that falls to this fraction of its values at both ends of a step vanishes between them: a
-/// step that resolves the motion contains no such dip otherwise.
+/// A determinant that falls to this fraction of its values at both ends of a step is taken to vanish between
+/// them: a step that resolves the motion contains no such dip otherwise.
 const VANISHES: f64 = 1e-6;
 
-/// The number of halvings or golden sections of a step: they end at about 1e-9 of it.
+/// The number of halvings or golden-section steps within a step: they end at about 1e-9 of its length.
 const SECTIONS: usize = 45;
 
 /// The matrix a of η = a ẋ + a_0 along a motion.
+///  Where det a = 0 the state (x, η) leaves ẋ undetermined along ker a: motions with different ẋ share that
+/// state, and rounding errors decide how they continue. Where det a is infinite, η is undetermined in the
+/// same way. Between the ends of a step, states are taken on the straight line between them, which crosses
+/// each surface that separates them.
 ///
-/// Where det a = 0 the state (x, η) leaves ẋ undetermined along ker a: motions with different ẋ share that
-/// state, and rounding decides how they continue. Where det a is infinite, η is undetermined in the same way.
-/// Between the ends of a step, states are taken on the straight line, which crosses each surface that
-/// separates the ends.
-///
-/// Frames given by b are not watched: the determinant of b would cost as much as a step of a small system.
+/// Quasi-velocities defined by b are not watched: the determinant of b would cost as much as a step of a
+/// small system.
 #[derive(Clone, Debug)]
 pub(crate) struct Chart {
     coordinates: usize,
     parameters: usize,
     entries: Evaluator,
-    /// Rows of the matrix, and whether its columns belong to ẋ.
+    /// The number of rows of the matrix, and whether its columns belong to ẋ.
     size: usize,
     of_velocities: bool,
     room: Vec<f64>,
@@ -65,8 +66,8 @@ impl Chart {
         }
     }
 
-    /// The chart of a system whose quasi-velocities, all of them in order, are changed by the matrix A: it
-    /// watches det A a if they are defined by ẋ, else det A.
+    /// The chart of a system all of whose quasi-velocities, in order, are transformed by the matrix A: it
+    /// watches det A a if they are defined in terms of ẋ, and det A otherwise.
     ///
     /// # Errors
     /// [`MechError`] for a symbol without a value.
@@ -85,8 +86,8 @@ impl Chart {
         Chart::new(system, &product, true)
     }
 
-    /// The chart that watches a square matrix by which some quasi-velocities determine others; `None` if that
-    /// is constant.
+    /// The chart that watches a square matrix through which some quasi-velocities determine others; `None` if
+    /// it is constant.
     pub(crate) fn watching<'g>(
         system: &System<'g>,
         a: &Matrix<Expr<'g>>,
@@ -120,7 +121,7 @@ impl Chart {
         Ok(Some(Chart { coordinates, parameters, entries, size, of_velocities, room, between, last }))
     }
 
-    /// The matrix at (t, x), row after row.
+    /// The matrix at (t, x), row by row.
     fn matrix(&mut self, t: f64, x: &[f64], parameters: &[f64]) -> &mut [f64] {
         self.entries.eval(t, &x[..self.coordinates], &parameters[..self.parameters], &mut self.room);
         &mut self.room
@@ -182,7 +183,8 @@ impl Chart {
             let there = along(low).abs().max(along(high).abs());
             return Some(if there < most { Passage::Zero } else { Passage::Pole });
         }
-        // With one sign at both ends, the question is whether it approaches zero, or infinity, and returns.
+        // With the same sign at both ends, the question is whether it approaches zero, or infinity, and
+        // returns.
         let slope = along(SLOPE).abs() - start.abs();
         let comes_back = |slope: f64, before: f64| slope * (end.abs() - before.abs()) < 0.0;
         if slope == 0.0 || !comes_back(slope, along(1.0 - SLOPE)) {
@@ -248,7 +250,7 @@ fn smallest(mut f: impl FnMut(f64) -> f64) -> f64 {
     at_left.min(at_right)
 }
 
-/// det A, n × n and row after row, by elimination with row pivots.
+/// The determinant of A, n × n and stored row by row, by elimination with row pivoting.
 pub(crate) fn determinant(a: &mut [f64], n: usize) -> f64 {
     let at = |i: usize, j: usize| i * n + j;
     let mut product = 1.0;

@@ -1,4 +1,4 @@
-//! From equations to a motion.
+//! Compiles equations into a motion.
 
 use pc_expr::Expr;
 
@@ -14,14 +14,14 @@ use crate::error::MechError;
 use crate::system::signals::Signals;
 
 /// M⁻¹ is written out if the factorisation of M takes no more operations than that of a full matrix of 16
-/// rows: for all smaller systems, and for longer ones with sparse coupling.
+/// rows. That includes all smaller systems, and larger ones with sparse coupling.
 pub(crate) const LONGEST_ELIMINATION: usize = 16 * 15 * 20 / 6;
 
 impl<'g> Equations<'g> {
     /// Compiles the equations, their Jacobian and the observables: integrals, energy, outputs.
     ///
     /// Accelerations are solved for in the program, unless there are many quasi-velocities, most of them
-    /// coupled with each other: then M is factorised in numbers at each call.
+    /// coupled with each other: then M is factorised numerically at each call.
     ///
     /// # Errors
     /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) for a symbol that is neither state nor
@@ -55,7 +55,7 @@ impl<'g> Equations<'g> {
         Ok(motion)
     }
 
-    /// Whether forces or energies may be functions of several pieces.
+    /// Whether forces or energies may be piecewise functions.
     fn has_pieces(&self) -> bool {
         let system = &self.system;
         let rates = system.states.iter().map(|(_, rate)| rate);
@@ -66,8 +66,8 @@ impl<'g> Equations<'g> {
 }
 
 impl FirstOrder<'_> {
-    /// Compiles; M⁻¹ is written out if the factorisation takes no more operations than `longest` and the
-    /// equations are linear in the unknowns.
+    /// Compiles the system; M⁻¹ is written out if the factorisation takes no more operations than `longest`
+    /// and the equations are linear in the unknowns.
     ///
     /// # Errors
     /// As for [`Equations::compile`].
@@ -77,7 +77,7 @@ impl FirstOrder<'_> {
         Ok(Motion { switches: switches.map(Box::new), ..motion })
     }
 
-    /// The same without the parts for functions of several pieces.
+    /// Compiles as above, but without the pieces of piecewise functions.
     pub(crate) fn compile_piece(
         &self,
         options: &CompileOptions,

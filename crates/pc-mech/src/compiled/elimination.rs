@@ -1,10 +1,10 @@
-//! M w = r solved, in expressions or in numbers.
+//! Solves M w = r, symbolically or numerically.
 //!
-//! `cost` decides from the zeros of M which is cheaper. `symbolic` writes M⁻¹ out, by `symbolic_ldl`;
-//! `numeric` factorises at each state, by `dense_ldl`. Under constraints w includes multipliers and the
-//! matrix is that of a `saddle_point`, solved by `solver`; for a tree with loops `schur` solves joint after
-//! joint. `columns` leaves out zeros, `pivots` checks that the choice of pivots stays sound, `prologue`
-//! computes once what parameters alone determine.
+//! `cost` estimates from the zeros of M which is cheaper. `symbolic` writes M⁻¹ out, using `symbolic_ldl`;
+//! `numeric` factorises at each state, using `dense_ldl`. Under constraints w includes multipliers and the
+//! matrix is that of a `saddle_point`, solved by `solver`; for a tree with loops `schur` solves joint by
+//! joint. `columns` leaves out zeros, `pivots` checks that no pivot vanishes, `prologue` computes once what
+//! depends on parameters alone.
 
 pub(crate) mod columns;
 pub(crate) mod cost;

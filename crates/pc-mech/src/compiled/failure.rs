@@ -8,17 +8,18 @@ use crate::error::{ConstraintError, EvaluationError, IntegralError, MechError};
 /// A failure without its time and state.
 #[derive(Debug)]
 pub(crate) enum EvaluationFailure {
-    /// The pivot of the unknown of that index vanished.
+    /// The pivot of the unknown with this index vanished.
     Pivot { index: usize, pivot: f64 },
     /// The constraint with this index among unknowns and constraints is degenerate at this state.
     Constraint { index: usize },
-    /// The state is too far from the constraints, whose indices follow this number of unknowns.
+    /// The state is too far from satisfying the constraints, whose indices start after this number of
+    /// unknowns.
     NoProjection { unknowns: usize },
-    /// A constraint that follows from the others does not vanish where they do.
+    /// A condition that should follow from the other constraints does not hold where they do.
     Departed { constraint: String },
     /// Newton's method ended with |F| = `residual`.
     NotSolved { residual: f64, iterations: usize },
-    /// The state is too far from those with the values of the integrals.
+    /// The state is too far from the states at which the integrals have the values to be kept.
     NotKept,
     /// The motion was compiled without this part.
     NotCompiled { what: &'static str },
@@ -27,7 +28,7 @@ pub(crate) enum EvaluationFailure {
 }
 
 impl EvaluationFailure {
-    /// The same failure with the index of a pivot converted by `place`.
+    /// The same failure, with the index of its pivot converted by `place`.
     pub(crate) fn at_place(self, place: impl Fn(usize) -> usize) -> EvaluationFailure {
         match self {
             EvaluationFailure::Pivot { index, pivot } => {
@@ -37,7 +38,8 @@ impl EvaluationFailure {
         }
     }
 
-    /// The error at the state with these `names`; `unknowns` are the names of unknowns and constraints.
+    /// The error for this failure at a state whose components have these `names`; `unknowns` are the
+    /// names of unknowns and constraints.
     pub(crate) fn at(self, unknowns: &[String], t: f64, names: &[String], state: &[f64]) -> MechError {
         let state = || names.iter().cloned().zip(state.iter().copied()).collect();
         match self {
@@ -68,7 +70,7 @@ impl EvaluationFailure {
 /// Checks that all values are finite.
 ///
 /// # Errors
-/// [`EvaluationFailure::Expr`] for the first intermediate value that is not.
+/// [`EvaluationFailure::Expr`] for the first intermediate value that is not finite.
 pub(crate) fn check_finite(
     values: &[f64],
     evaluator: &Evaluator,
@@ -78,7 +80,7 @@ pub(crate) fn check_finite(
     if values.iter().all(|value| value.is_finite()) { Ok(()) } else { Err(blame(evaluator, at)) }
 }
 
-/// The cause of values that are not finite.
+/// The failure that names the first intermediate value that is not finite.
 #[cold]
 pub(crate) fn blame(evaluator: &Evaluator, Point { t, y, p }: Point<'_>) -> EvaluationFailure {
     EvaluationFailure::Expr(evaluator.blame(t, y, p))

@@ -14,21 +14,22 @@ use crate::compiled::projection::unit_quaternions::UnitQuaternions;
 use crate::equations::poincare::Equations;
 use crate::tree::equations::TreeEquations;
 
-/// ẏ = g(t, y, w) with the unknowns w of M(t, y) w = r(t, y), M symmetric, or, more generally, of
+/// The system ẏ = g(t, y, w), whose unknowns w solve M(t, y) w = r(t, y) with M symmetric, or, more
+/// generally,
 ///
 ///   p(t, y, w) = r(t, y),   M(t, y, w) = ∂p/∂w.
 ///
-/// Poincaré's equations (9) are the case w = η̇ of y = (x, η), g = (b η + b_0, w). The parameters may be in
+/// Poincaré's equations (9) are the case w = η̇ of y = (x, η), g = (b η + b_0, w). Parameters may occur in
 /// g, p, M and r.
 #[derive(Clone, Debug)]
 pub(crate) struct FirstOrder<'g> {
     pub(crate) graph: &'g Graph,
     pub(crate) time: Expr<'g>,
-    /// The symbols of y, coordinates first.
+    /// The symbols for the components of y, coordinates first.
     pub(crate) state: Vec<Expr<'g>>,
     /// Number of coordinates.
     pub(crate) coordinates: usize,
-    /// Number of first-order states, the last ones.
+    /// Number of first-order states, which come last.
     pub(crate) states: usize,
     /// The parameters with their values.
     pub(crate) parameters: Vec<(Expr<'g>, f64)>,
@@ -42,15 +43,15 @@ pub(crate) struct FirstOrder<'g> {
     pub(crate) multipliers: usize,
     /// The number of independent constraints, whose multipliers come first.
     pub(crate) rank: usize,
-    /// M, k × k; without entries for a tree, which is eliminated joint after joint.
+    /// The k × k matrix M; it has no entries for a tree, which is eliminated joint by joint.
     pub(crate) mass: Matrix<Expr<'g>>,
-    /// M w = r of a tree, if M and r are not written out.
+    /// The equations M w = r of a tree, if M and r are not written out.
     pub(crate) tree: Option<Rc<TreeEquations<'g>>>,
-    /// p, if it differs from M w.
+    /// The function p, if it differs from M w.
     pub(crate) implicit: Option<Implicit<'g>>,
     /// r, in t and y.
     pub(crate) right: Vec<Expr<'g>>,
-    /// g, in t, y and w, one per component of the state.
+    /// The rates g as functions of t, y and w, one per component of the state.
     pub(crate) rates: Vec<Expr<'g>>,
     /// Symbols by whose powers the unknowns are collected.
     pub(crate) collected_by: Vec<Expr<'g>>,
@@ -61,7 +62,7 @@ pub(crate) struct FirstOrder<'g> {
     pub(crate) quaternions: UnitQuaternions,
 }
 
-/// The left side of p(t, y, w) = r(t, y), not linear in w.
+/// The left-hand side of p(t, y, w) = r(t, y), which is not linear in w.
 #[derive(Clone, Debug)]
 pub(crate) struct Implicit<'g> {
     /// p, k of them.
@@ -71,7 +72,7 @@ pub(crate) struct Implicit<'g> {
 }
 
 impl<'g> FirstOrder<'g> {
-    /// M⁻¹ in the form in which it is applied.
+    /// The inverse M⁻¹ in the form in which it is applied.
     pub(crate) fn factors(&self) -> Factors<'g> {
         match &self.tree {
             Some(tree) => Factors::Tree(Rc::clone(tree)),
@@ -79,7 +80,7 @@ impl<'g> FirstOrder<'g> {
         }
     }
 
-    /// The number of operations of ẏ written out.
+    /// The number of operations of ẏ when it is written out.
     fn operations(&self) -> usize {
         let unknowns = self.solve(&self.factors());
         let values: Vec<_> = self.unknowns.iter().copied().zip(unknowns).collect();
@@ -101,7 +102,7 @@ impl<'g> FirstOrder<'g> {
         self.parameters.iter().map(|&(symbol, _)| symbol).collect()
     }
 
-    /// w = M⁻¹ r; an unknown that is a single quotient is shortened again.
+    /// The unknowns w = M⁻¹ r; an unknown that is a single quotient is shortened once more.
     pub(crate) fn solve(&self, factors: &Factors<'g>) -> Vec<Expr<'g>> {
         if let Some(tree) = &self.tree {
             return tree.system.in_order(&tree.dynamics.accelerations());
@@ -135,7 +136,7 @@ impl<'g> FirstOrder<'g> {
         nonzeros(k, columns)
     }
 
-    /// F = r − M w or r − p, in t, y and w.
+    /// The residual F = r − M w or r − p, as a function of t, y and w.
     pub(crate) fn balance(&self) -> Vec<Expr<'g>> {
         if let Some(tree) = &self.tree {
             return tree.system.in_order(&tree.dynamics.balance(&tree.system.by_link(&self.unknowns)));
@@ -150,7 +151,7 @@ impl<'g> FirstOrder<'g> {
         self.graph.jacobian(&self.rates, &self.unknowns)
     }
 
-    /// One new symbol for each of `symbols`, with the same name behind `mark`.
+    /// One new symbol for each of `symbols`, with `mark` prefixed to its name.
     pub(crate) fn fresh(&self, mark: &str, symbols: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let equations = [self.balance(), self.rates.clone(), self.mass.nonzero_entries()].concat();
         let inputs = self.inputs(&self.unknowns);
@@ -167,7 +168,7 @@ impl<'g> FirstOrder<'g> {
 }
 
 impl<'g> Equations<'g> {
-    /// The accelerations η̇ = M⁻¹ r, length k.
+    /// The k accelerations η̇ = M⁻¹ r.
     pub fn accelerations(&self) -> Vec<Expr<'g>> {
         let first_order = self.written_first_order();
         first_order.solve(&first_order.factors())
@@ -179,14 +180,14 @@ impl<'g> Equations<'g> {
         self.shortest_first_order(if is_large { TreeElimination::ByJoints } else { TreeElimination::Whole })
     }
 
-    /// Inverse dynamics: the generalised forces that have to be added to Q for accelerations η̇, whose
-    /// [symbols](crate::System::accelerations) they contain, M η̇ − r; length k. For a large tree it is
-    /// computed from body to body, in O(N).
+    /// Inverse dynamics: the k generalised forces M η̇ − r that have to be added to Q to obtain the
+    /// accelerations η̇, whose [symbols](crate::System::accelerations) they contain. For a large tree they
+    /// are computed body by body, in O(N).
     pub fn inverse_dynamics(&self) -> Vec<Expr<'g>> {
         self.written_first_order().balance().into_iter().map(|left| -left).collect()
     }
 
-    /// The system; that of a tree is solved joint after joint if that takes fewer operations.
+    /// The first-order system; that of a tree is solved joint by joint if that takes fewer operations.
     pub(crate) fn shortest_first_order(&self, elimination: TreeElimination) -> FirstOrder<'g> {
         let Some(tree) = self.system.tree.as_ref().filter(|_| elimination != TreeElimination::Whole) else {
             return self.first_order();
@@ -256,9 +257,10 @@ pub(crate) struct Linearised<'a, 'g> {
     factors: &'a Factors<'g>,
     /// g, then F.
     rows: Vec<Expr<'g>>,
-    /// The rows that contain each symbol, by its name; found on the first derivative by single symbols.
+    /// The rows that contain each symbol, by its name; found when a derivative with respect to a single
+    /// symbol is first needed.
     rows_with: OnceCell<HashMap<Option<String>, Vec<usize>>>,
-    /// ∂g/∂w: the nonzero entries of each row with their columns.
+    /// The nonzero entries of each row of ∂g/∂w, with their columns.
     coupling: Vec<SparseColumn<'g>>,
     /// The rows with nonzero entries in each column of ∂g/∂w.
     coupled: Vec<Vec<usize>>,
@@ -267,7 +269,7 @@ pub(crate) struct Linearised<'a, 'g> {
 }
 
 impl<'a, 'g> Linearised<'a, 'g> {
-    /// `unknowns` is w in t and y.
+    /// `unknowns` expresses w in terms of t and y.
     pub(crate) fn new(
         system: &FirstOrder<'g>,
         factors: &'a Factors<'g>,
@@ -302,7 +304,7 @@ impl<'a, 'g> Linearised<'a, 'g> {
         })
     }
 
-    /// The nonzero components of ẏ′ with their places when each symbol of `direction` changes at the
+    /// The nonzero components of ẏ′, with their indices, when each symbol of `direction` changes at the
     /// given rate.
     fn nonzero_along(&self, direction: &[(Expr<'g>, Expr<'g>)]) -> SparseColumn<'g> {
         let graph = self.graph;
@@ -338,14 +340,14 @@ impl<'a, 'g> Linearised<'a, 'g> {
         rates.into_iter().map(total).filter(|(_, total)| !total.is_zero()).collect()
     }
 
-    /// ẏ′ when each symbol of `direction` changes at the given rate.
+    /// The derivative ẏ′ when each symbol of `direction` changes at the given rate.
     pub(crate) fn along(&self, direction: &[(Expr<'g>, Expr<'g>)]) -> Vec<Expr<'g>> {
         let mut all = vec![Expr::ZERO; self.coupling.len()];
         self.nonzero_along(direction).into_iter().for_each(|(place, rate)| all[place] = rate);
         all
     }
 
-    /// ∂ẏ/∂q for each symbol q of `symbols`, column after column.
+    /// The derivatives ∂ẏ/∂q for each symbol q in `symbols`, column by column.
     pub(crate) fn columns(&self, symbols: &[Expr<'g>]) -> Vec<SparseColumn<'g>> {
         symbols.iter().map(|&symbol| self.nonzero_along(&[(symbol, Expr::ONE)])).collect()
     }

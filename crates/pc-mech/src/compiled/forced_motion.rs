@@ -12,9 +12,9 @@ use crate::system::external_force::ExternalForce;
 
 /// A [`Motion`] under external forces: ẏ = f(t, y, q(t, y)).
 ///
-/// The forces are run-time inputs of the motion, like parameters, and follow these. So the Jacobian is
-/// ∂f/∂y + ∂f/∂q ∂q/∂y, where only ∂q/∂y may be a [difference quotient](ExternalForce::jacobian). It is full: its
-/// zero pattern is not known.
+/// The forces are run-time inputs of the motion, like parameters, and come after them. So the Jacobian is ∂f/∂y +
+/// ∂f/∂q ∂q/∂y, where only ∂q/∂y may be a [difference quotient](ExternalForce::jacobian). It is full: its zero
+/// pattern is not known.
 ///
 /// ```
 /// use pc_mech::{Graph, System, VectorField};
@@ -53,7 +53,7 @@ impl Equations<'_> {
     /// Compiles the equations, their Jacobian and the observables, with `force` for the external forces.
     ///
     /// # Errors
-    /// As [`compile`](Equations::compile), and [`ForceError::NoneDeclared`] if none was declared.
+    /// As [`compile`](Equations::compile), and [`ForceError::NoneDeclared`] if no external force was declared.
     pub fn compile_forced<F: ExternalForce>(&self, force: F) -> Result<ForcedMotion<F>, MechError> {
         self.compile_forced_for(CompileOptions::default(), force)
     }
@@ -101,16 +101,16 @@ impl Multipliers<'_> {
     }
 }
 
-/// The options with ∂f/∂q if a Jacobian needs it.
+/// The options, extended by ∂f/∂q if a Jacobian needs it.
 fn derived(options: CompileOptions) -> CompileOptions {
     options.parameter_jacobian(options.parameter_jacobian || options.jacobian || options.jvp)
 }
 
 impl Motion {
-    /// The motion under the forces of `force` on the quasi-velocities called `names`: those for which
-    /// external forces were [declared](crate::SystemBuilder::external_force), in that order. It
-    /// [keeps](Motion::keep) the same integrals. It has a Jacobian if this motion has one and [that by its
-    /// parameters](CompileOptions::parameter_jacobian).
+    /// The motion under the forces that `force` computes. They act on the quasi-velocities called `names`,
+    /// those for which external forces were [declared](crate::SystemBuilder::external_force), in that order. It
+    /// [keeps](Motion::keep) the same integrals. It has a Jacobian if this motion has one, and also [one with
+    /// respect to its parameters](CompileOptions::parameter_jacobian).
     ///
     /// # Errors
     /// [`ForceError::NoneDeclared`] without names; [`ShapeError`] for more names than the motion has inputs.
@@ -169,7 +169,7 @@ impl<F: ExternalForce> ForcedMotion<F> {
         &mut self.motion.parameters_mut()[..self.parameters]
     }
 
-    /// The parameters, then the forces at (t, y): the run-time inputs of all that is compiled of the system.
+    /// The parameters, then the forces at (t, y): the run-time inputs of everything compiled from the system.
     ///
     /// # Errors
     /// [`ForceError::Failed`] and [`ForceError::NotFinite`].
@@ -261,7 +261,7 @@ impl<F: ExternalForce> ForcedMotion<F> {
         self.motion.parameter_jacobian(t, y, &mut self.columns)
     }
 
-    /// ∂f/∂q, column after column.
+    /// The columns of ∂f/∂q, one after the other.
     fn by_forces(&self) -> impl Iterator<Item = &[f64]> {
         self.columns.chunks_exact(self.motion.dim()).skip(self.parameters)
     }
@@ -314,7 +314,7 @@ impl<F: ExternalForce> VectorField for ForcedMotion<F> {
         self.motion.has_jacobian().then_some(&self.pattern)
     }
 
-    /// The pattern is full, so both storages are the same.
+    /// The pattern is full, so sparse and dense storage are the same.
     fn sparse_jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
         self.jacobian(t, y, values)
     }

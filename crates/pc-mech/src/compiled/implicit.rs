@@ -1,4 +1,4 @@
-//! Unknowns of nonlinear equations: Newton's method with line search.
+//! Solves nonlinear equations for their unknowns by Newton's method with line search.
 
 use pc_expr::{Backend, Evaluator, ExprError, Pattern, Program};
 
@@ -7,13 +7,13 @@ use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::first_order::{FirstOrder, Implicit};
 use crate::compiled::point::Point;
 
-/// The most steps.
+/// The maximum number of steps.
 const MOST_STEPS: usize = 200;
-/// The most halvings of a step before the iteration ends.
+/// The maximum number of halvings of a step before the iteration ends.
 const HALVINGS: i32 = 60;
 /// A residual this small relative to its terms is accepted as a solution.
 const ENOUGH: f64 = 1e-12;
-/// A residual this small consists of a few roundings, which no step can reduce.
+/// A residual this small consists of a few rounding errors, which no step can reduce.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Solves F = r(t, y) − p(t, y, w) = 0 for w:
@@ -27,22 +27,22 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// So |F| falls, w stays in the domain of p, and p approaches r on a nearly straight line, which keeps w away
 /// from the boundary of the domain until the end.
 ///
-/// Every solution starts from the same guess, so that w depends on (t, y) only, to the last bit; only if
-/// that fails, it starts from the last solution.
+/// Every solution starts from the same guess, so that w depends on (t, y) only, to the last bit; only if that
+/// fails does the iteration start from the last solution.
 #[derive(Clone, Debug)]
 pub(crate) struct Newton {
-    /// From (t, (y, w)): the nonzero entries of the lower triangle of M, then p, then r.
+    /// Computes, from (t, (y, w)), the nonzero entries of the lower triangle of M, then p, then r.
     equations: Evaluator,
     values: Vec<f64>,
     lower: Pattern,
     guess: Vec<f64>,
     last: Option<Vec<f64>>,
     here: Iterate,
-    /// F at the trial point.
+    /// The residual F at the trial point.
     ahead: Vec<f64>,
 }
 
-/// w, and the values there; k of each.
+/// The unknowns w and the values at w; k of each.
 #[derive(Clone, Debug)]
 struct Iterate {
     point: Vec<f64>,
@@ -52,7 +52,7 @@ struct Iterate {
     step: Vec<f64>,
     /// |r_s| + |p_s| + Σ_j |M_sj w_j|, the scale of the rounding error of F_s.
     sizes: Vec<f64>,
-    /// 1/√|M_ss|: with these weights the norm of F is independent of the units of w.
+    /// The weights 1/√|M_ss|, which make the norm of F independent of the units of w.
     weights: Vec<f64>,
 }
 
@@ -82,17 +82,17 @@ impl Newton {
         })
     }
 
-    /// Sets the starting point of solutions.
+    /// Sets the w from which each iteration starts.
     pub(crate) fn begin_at(&mut self, guess: &[f64]) {
         self.guess.copy_from_slice(guess);
     }
 
-    /// The program of M, p and r.
+    /// The program that computes M, p and r.
     pub(crate) fn program(&self) -> &Program {
         self.equations.program()
     }
 
-    /// Writes w after y in `known`, and leaves M there factorised in `solver`.
+    /// Writes w after y in `known`, and leaves M at the solution factorised in `solver`.
     ///
     /// # Errors
     /// [`EvaluationFailure::NotSolved`]; [`EvaluationFailure::Expr`] and [`EvaluationFailure::Pivot`] where p cannot be
@@ -117,7 +117,7 @@ impl Newton {
         outcome
     }
 
-    /// As [`solve`](Newton::solve), from the w in `known`.
+    /// As [`solve`](Newton::solve), but starts from the w in `known`.
     fn solve_from(
         &mut self,
         (t, p): At<'_>,
@@ -158,8 +158,8 @@ impl Newton {
         Err(self.failure(MOST_STEPS))
     }
 
-    /// Takes the first λ = ½^`halvings`, … that reduces F, of norm `before`, sufficiently. Returns the number
-    /// of halvings, if there is one.
+    /// Takes the first λ from ½^`halvings` downwards that sufficiently reduces F, whose norm was `before`.
+    /// Returns the number of halvings, if there is such a λ.
     fn search(
         &mut self,
         halvings: i32,
@@ -201,7 +201,7 @@ impl Newton {
         self.here.norm(&self.ahead)
     }
 
-    /// Continues from `point`, with its values and factors of M.
+    /// Continues from `point`, and restores the values and the factors of M there.
     fn look_from(&mut self, point: &[f64], solver: &mut Solver) {
         let Iterate { point: w, residual, step, sizes, weights } = &mut self.here;
         let (mass, sides) = self.values.split_at(self.lower.len());
@@ -236,7 +236,8 @@ impl Iterate {
         components.iter().zip(&self.weights).fold(0.0, |norm, (f, weight)| norm.max((f * weight).abs()))
     }
 
-    /// F relative to its terms: max |F_s|/size_s; components whose terms are all 0 do not count.
+    /// The largest component of F relative to its terms, max |F_s|/size_s; components whose terms are all 0 do
+    /// not count.
     fn relative(&self, components: &[f64]) -> f64 {
         components.iter().zip(&self.sizes).fold(0.0, |most, (f, size)| most.max(f.abs() / size))
     }

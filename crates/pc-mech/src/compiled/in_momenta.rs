@@ -22,12 +22,13 @@ impl Multipliers<'_> {
     ///
     ///   ẏ_s = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α,   ẋ = b η + b_0,   C η + c_0 = 0.
     ///
-    /// No velocities are chosen as independent, so only positions where the constraints themselves are singular are
-    /// singular. States are projected as those of [`compile_for`](Multipliers::compile_for) are, with the same
-    /// observables and [kept](Motion::keep) integrals; integrals to be kept must be those of these multipliers. There
-    /// is no product with the Jacobian.
+    /// No velocities are chosen as independent, so a position is singular only where the constraints themselves are.
+    /// States are projected as those of [`compile_for`](Multipliers::compile_for) are, with the same observables and
+    /// [kept](Motion::keep) integrals; integrals to be kept must be those of the equations with these multipliers.
+    /// Products with the Jacobian are not available.
     ///
-    /// `guess` are η from which y = ∂L/∂η is solved where L is not quadratic in η, or a constraint is not affine.
+    /// `guess` is the η from which the solution of y = ∂L/∂η starts, where L is not quadratic in η or a
+    /// constraint is not affine.
     ///
     /// ```
     /// use pc_mech::{Constraint, Graph, System, VectorField};
@@ -49,7 +50,8 @@ impl Multipliers<'_> {
     /// ```
     ///
     /// # Errors
-    /// As [`compile_for`](Multipliers::compile_for); [`ShapeError`](crate::ShapeError) for a guess of another length.
+    /// As [`compile_for`](Multipliers::compile_for); [`ShapeError`](crate::ShapeError) for a guess of the wrong
+    /// length.
     pub fn compile_in_momenta(&self, options: CompileOptions, guess: &[f64]) -> Result<Motion, MechError> {
         let motion = InMomenta::new(self, self.legendre_transform(guess)?, &options)?;
         let momenta = self.equations.system.momentum_symbols();
@@ -159,7 +161,7 @@ impl InMomenta {
         self.jacobian.as_ref().map(|_| &self.full)
     }
 
-    /// Computes the (x, η, z) of (x, y, z) into `state`.
+    /// Writes the (x, η, z) that corresponds to (x, y, z) to `state`.
     ///
     /// # Errors
     /// As [`LegendreTransform::to_quasi_velocities`].
@@ -175,8 +177,8 @@ impl InMomenta {
         &self.state
     }
 
-    /// The observables, not finite where momenta determine no quasi-velocities; without accelerations unless
-    /// `solved`.
+    /// The observables, not finite where the momenta do not determine quasi-velocities; without accelerations
+    /// unless `solved`.
     pub(crate) fn observe(&mut self, t: f64, y: &[f64], values: &mut [f64], solved: bool) {
         match self.read(t, y) {
             Ok(()) => self.inner.watch(t, &self.state, values, solved),
@@ -184,7 +186,7 @@ impl InMomenta {
         }
     }
 
-    /// The residual of each constraint, not finite where momenta determine no quasi-velocities.
+    /// The residual of each constraint, not finite where the momenta do not determine quasi-velocities.
     pub(crate) fn constraint_residuals(&mut self, t: f64, y: &[f64], residuals: &mut [f64]) {
         match self.read(t, y) {
             Ok(()) => self.inner.constraint_residuals_to(t, &self.state, residuals),
@@ -231,13 +233,13 @@ impl InMomenta {
     }
 
     pub(crate) fn restart(&mut self, t: f64, y: &[f64]) {
-        // If momenta determine no quasi-velocities, the next evaluation reports it.
+        // If the momenta do not determine quasi-velocities, the next evaluation reports it.
         if self.read(t, y).is_ok() {
             self.inner.restart(t, &self.state);
         }
     }
 
-    /// ∂f/∂y, column after column: with F(t, x, η, z) = (ẋ, ẏ, ż) and η = h(t, x, y, z),
+    /// Computes ∂f/∂y, column by column: with F(t, x, η, z) = (ẋ, ẏ, ż) and η = h(t, x, y, z),
     ///
     ///   ∂f/∂x = ∂F/∂x + (∂F/∂η) ∂h/∂x,   ∂f/∂y = (∂F/∂η) ∂h/∂y,   ∂f/∂z as ∂f/∂x.
     pub(crate) fn jacobian(&mut self, t: f64, y: &[f64], entries: &mut [f64]) -> Result<(), Failure> {
@@ -266,7 +268,7 @@ impl InMomenta {
             slopes.by_symbol.extend_from_slice(&self.of_inner[place(q) * dim..(place(q) + 1) * dim]);
         }
         self.change(slopes, t)?;
-        // The columns by x and z come first.
+        // The columns for x and z come first.
         let places = (0..slopes.symbols).map(place).chain(moving.clone());
         for (place, column) in places.zip(slopes.columns.chunks_exact(dim)) {
             entries[place * dim..(place + 1) * dim].copy_from_slice(column);
@@ -274,7 +276,8 @@ impl InMomenta {
         Ok(())
     }
 
-    /// Computes the derivative of (ẋ, η̇, ż) by (x, η, z) into `of_inner`, and (x, η, z, η̇) into `known`.
+    /// Computes the derivative of (ẋ, η̇, ż) with respect to (x, η, z) into `of_inner`, and (x, η, z, η̇) into
+    /// `known`.
     fn find_inner_jacobian(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
         let mut rates = std::mem::take(&mut self.rates);
         let outcome = self.solve(t, y, &mut rates);
@@ -283,7 +286,7 @@ impl InMomenta {
         self.inner.jacobian(t, &self.known[..y.len()], &mut self.of_inner)
     }
 
-    /// ∂f/∂p, column after column, as [`jacobian`](InMomenta::jacobian).
+    /// Computes ∂f/∂p, column by column, as [`jacobian`](InMomenta::jacobian) does ∂f/∂y.
     pub(crate) fn parameter_jacobian(
         &mut self,
         t: f64,
@@ -297,7 +300,7 @@ impl InMomenta {
         outcome
     }
 
-    /// ∂f/∂t, as [`jacobian`](InMomenta::jacobian).
+    /// Computes ∂f/∂t, as [`jacobian`](InMomenta::jacobian) does ∂f/∂y.
     pub(crate) fn time_derivative(
         &mut self,
         t: f64,
@@ -310,8 +313,8 @@ impl InMomenta {
         outcome
     }
 
-    /// The columns of ∂f/∂q for the symbols q of `slopes`, by which `inner` differentiates the motion of (x,
-    /// η, z).
+    /// The columns of ∂f/∂q for the symbols q of `slopes`, where `inner` differentiates the motion of (x, η,
+    /// z).
     fn slopes_by(
         &mut self,
         slopes: &mut Slopes,
@@ -329,7 +332,7 @@ impl InMomenta {
     }
 
     /// Computes the columns of ∂f/∂q for each symbol q, then those of ∂f/∂y, into `columns` of `slopes`; (ẋ,
-    /// η̇, ż) has the derivatives `of_inner` by (x, η, z) and `by_symbol` by q.
+    /// η̇, ż) has the derivatives `of_inner` with respect to (x, η, z) and `by_symbol` with respect to q.
     fn change(&mut self, slopes: &mut Slopes, t: f64) -> Result<(), Failure> {
         let (n, k, dim) = (self.inner.coordinates(), self.quasi_velocities, self.state.len());
         let (m, of_inner) = (slopes.multipliers, &self.of_inner);

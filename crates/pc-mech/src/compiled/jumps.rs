@@ -6,9 +6,9 @@ use pc_expr::{Expr, ExprError, RateJump};
 use crate::compiled::first_order::FirstOrder;
 
 impl<'g> FirstOrder<'g> {
-    /// The [jumps](discontinuities) of r − M w or r − p and of the rates g through which the state or the time
-    /// passes. A state whose rate is zero changes by events alone, which have their own rule, and passes through
-    /// none.
+    /// The [jumps](discontinuities) of r − M w or r − p, and of the rates g, that a motion crosses as its
+    /// state or time changes. A state whose rate is zero changes only at events, which are handled separately,
+    /// and so passes through no jump.
     ///
     /// # Errors
     /// [`ExprError::UnboundSymbol`] for a symbol that is neither state nor declared parameter.
@@ -36,7 +36,7 @@ impl<'g> FirstOrder<'g> {
         Ok(found.into_iter().map(rate_jump).collect())
     }
 
-    /// The variables that change along a motion by its rates.
+    /// The variables that change along a motion because their rates are not zero.
     fn moving(&self) -> Vec<Expr<'g>> {
         let flowing = self.state.iter().zip(&self.rates).filter(|(_, rate)| !rate.is_zero());
         // In momenta, velocities are unknowns: functions of the state that change along the motion.

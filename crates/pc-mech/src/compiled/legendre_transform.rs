@@ -1,4 +1,4 @@
-//! From quasi-velocities to momenta and back, in numbers: y = ∂L/∂η.
+//! The numerical conversion of quasi-velocities to momenta and back: y = ∂L/∂η.
 
 use std::ops::Range;
 
@@ -12,7 +12,7 @@ use crate::compiled::point::Point;
 use crate::error::{MechError, shape};
 use crate::system::system::System;
 
-/// The compiled conversion between states (x, η) and (x, y) of one system, y_s = ∂L/∂η_s and η_s = ∂H/∂y_s
+/// The compiled conversion between states (x, η) and (x, y) of one system, by y_s = ∂L/∂η_s and η_s = ∂H/∂y_s
 /// (Legendre).
 #[derive(Clone, Debug)]
 pub struct LegendreTransform {
@@ -33,12 +33,12 @@ enum QuasiVelocities {
     Implicit(Box<Implicit>),
 }
 
-/// p(w) = r with w = (η, μ), by Newton's method.
+/// The solution of p(w) = r with w = (η, μ), by Newton's method.
 #[derive(Clone, Debug)]
 struct Implicit {
     newton: Newton,
     solver: Solver,
-    /// Equations of η alone, whose solution is the starting point.
+    /// Equations for η alone, whose solution is the starting point.
     nearby: Option<Box<QuasiVelocities>>,
     /// The starting point if these have no solution.
     guess: Vec<f64>,
@@ -47,10 +47,10 @@ struct Implicit {
     known: Vec<f64>,
 }
 
-/// M w = r with w = (η, μ), in numbers.
+/// The numerical solution of M w = r with w = (η, μ).
 #[derive(Clone, Debug)]
 struct Linear {
-    /// From (t, (x, y)): the nonzero entries of the lower triangle of M, then r.
+    /// Computes, from (t, (x, y)), the nonzero entries of the lower triangle of M, then r.
     equations: Evaluator,
     lower: Pattern,
     values: Vec<f64>,
@@ -60,8 +60,9 @@ struct Linear {
 }
 
 impl QuasiVelocities {
-    /// η, the first unknowns of these equations, in numbers. Nonlinear equations start from the solution of
-    /// those `nearby`, as several velocities may satisfy the constraints, such as ±v for v² = 1.
+    /// Compiles the numerical solution of these equations, whose first unknowns are η. Nonlinear equations
+    /// start from the solution of those `nearby`, as several velocities may satisfy the constraints, such as ±v
+    /// for v² = 1.
     fn solved(
         equations: &FirstOrder<'_>,
         nearby: Option<&FirstOrder<'_>>,
@@ -146,7 +147,7 @@ impl Linear {
 
 impl LegendreTransform {
     /// The conversion for `system`, with `momenta` y and ∂L/∂η = `of_velocities`; η are the unknowns of
-    /// `equations`, and the expressions `closed` where these are linear.
+    /// `equations`, or, where these are linear, the expressions `closed`.
     ///
     /// # Errors
     /// As [`Canonical::legendre_transform`](crate::Canonical::legendre_transform).
@@ -168,8 +169,8 @@ impl LegendreTransform {
     }
 
     /// The conversion for `system`, whose momenta are called `momenta`; η are the first unknowns of
-    /// `equations`, which are in (t, x, y). If these are not linear, η is the solution nearest to that of
-    /// the linear equations `nearby`.
+    /// `equations`, whose variables are (t, x, y). If these are not linear, η is the solution nearest to that
+    /// of the linear equations `nearby`.
     ///
     /// # Errors
     /// As [`Canonical::legendre_transform`](crate::Canonical::legendre_transform).
@@ -207,9 +208,9 @@ impl LegendreTransform {
         })
     }
 
-    /// Replaces each of the columns, with one entry per equation of η, by the solution with the matrix
-    /// M = ∂²L/∂η∂η, bordered by the constraints if there are any, at the last state converted into
-    /// quasi-velocities. Closed expressions have no such matrix.
+    /// Replaces each of the columns, with one entry per equation for η, by the solution of the linear equations
+    /// with the matrix M = ∂²L/∂η∂η, bordered by the constraints if there are any, at the state last converted
+    /// to quasi-velocities. Closed expressions have no such matrix.
     pub(crate) fn solve_last(&mut self, columns: &mut [f64]) {
         match &mut self.quasi_velocities {
             QuasiVelocities::Closed(_) => columns.fill(f64::NAN),
@@ -223,7 +224,7 @@ impl LegendreTransform {
         &mut self.parameters
     }
 
-    /// (x, y) of the state (x, η), length n + k both; first-order states follow unchanged.
+    /// The state (x, y) that corresponds to (x, η), both of length n + k; first-order states follow unchanged.
     ///
     /// # Errors
     /// [`ShapeError`](crate::ShapeError); [`ExprError::NotFinite`](pc_expr::ExprError::NotFinite) outside the domain of
@@ -234,7 +235,8 @@ impl LegendreTransform {
         Ok(result)
     }
 
-    /// Writes (x, y) of the state (x, η) to `result`, as [`to_momenta`](LegendreTransform::to_momenta) gives it.
+    /// Writes the state (x, y) that corresponds to (x, η) to `result`, as
+    /// [`to_momenta`](LegendreTransform::to_momenta) gives it.
     ///
     /// # Errors
     /// As there.
@@ -246,8 +248,8 @@ impl LegendreTransform {
             .map_err(|failure| self.error(failure, t, state))
     }
 
-    /// (x, η) of the state (x, y), length n + k both; first-order states follow unchanged. Where L is
-    /// not quadratic, Newton's method finds it from the [guess](crate::Canonical::with_guess).
+    /// The state (x, η) that corresponds to (x, y), both of length n + k; first-order states follow unchanged.
+    /// Where L is not quadratic, Newton's method finds η from the [guess](crate::Canonical::with_guess).
     ///
     /// # Errors
     /// [`ShapeError`](crate::ShapeError);
@@ -260,7 +262,7 @@ impl LegendreTransform {
         Ok(result)
     }
 
-    /// Writes (x, η) of the state (x, y) to `result`, as
+    /// Writes the state (x, η) that corresponds to (x, y) to `result`, as
     /// [`to_quasi_velocities`](LegendreTransform::to_quasi_velocities) gives it.
     ///
     /// # Errors
@@ -291,7 +293,7 @@ impl LegendreTransform {
         n..n + self.names[1].len()
     }
 
-    /// The error at the state (x, y).
+    /// The error for a failure at the state (x, y).
     fn error(&self, failure: EvaluationFailure, t: f64, state: &[f64]) -> MechError {
         let [x, _, y, z] = &self.names;
         failure.at(&self.unknowns, t, &[&x[..], y, z].concat(), state)

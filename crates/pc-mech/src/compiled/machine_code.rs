@@ -1,4 +1,4 @@
-//! f as plain machine code.
+//! The right-hand side f as plain machine code.
 
 use std::sync::Arc;
 
@@ -8,10 +8,11 @@ use crate::compiled::elimination::pivots::PivotPartition;
 
 /// The machine code of f, for callers that manage memory themselves, and the meaning of its outputs.
 ///
-/// [`entry`](MachineCode::entry) writes ẏ, then the pivots of M and the numbers they are compared with, if
-/// they change with the state. Its parameters are the [`code_parameters`](crate::Motion::code_parameters):
-/// their values and results that depend on them alone. [`is_regular`](MachineCode::is_regular) decides
-/// whether ẏ can be trusted. Valid as long as the motion it came from, or a clone made since.
+/// [`entry`](MachineCode::entry) writes ẏ, then those pivots of M, and those numbers with which they are
+/// compared, that change with the state. Its parameters are the
+/// [`code_parameters`](crate::Motion::code_parameters): the values of the parameters and results that depend on
+/// them alone. [`is_regular`](MachineCode::is_regular) decides whether ẏ can be trusted. The code stays valid
+/// as long as the motion it came from, or a clone of that motion, exists.
 #[derive(Clone, Debug)]
 pub struct MachineCode {
     entry: Entry,
@@ -37,12 +38,12 @@ impl MachineCode {
         self.entry
     }
 
-    /// The length of the scratch memory it needs.
+    /// The length of the scratch memory that the code needs.
     pub fn scratch_len(&self) -> usize {
         self.scratch
     }
 
-    /// Number of rates, that of the components of the state.
+    /// Number of rates, one per component of the state.
     #[inline]
     pub fn rates_len(&self) -> usize {
         self.rates
@@ -64,13 +65,13 @@ impl MachineCode {
         self.pivots.fixed_len()
     }
 
-    /// Whether no pivot of M vanishes, by the outputs after the rates and the
+    /// Whether no pivot of M vanishes, judged by the outputs `watched` after the rates and the
     /// [`fixed_pivots`](crate::Motion::fixed_pivots), of which `fixed` gives one by its index. Where it returns false,
     /// [`rhs`](pc_expr::VectorField::rhs) fails; that also fails where a rate is not finite, which is not checked
     /// here.
     ///
     /// # Panics
-    /// If there are not as many outputs.
+    /// If `watched` does not have as many outputs.
     #[inline]
     pub fn is_regular(&self, watched: &[f64], fixed: impl Fn(usize) -> f64) -> bool {
         self.pivots.check(fixed, watched).is_ok()

@@ -41,13 +41,13 @@ impl MassFactors {
         MassFactors { factors: DenseLdl::new(k), values: vec![0.0; lower.len()], lower }
     }
 
-    /// Factorises a matrix, given whole.
+    /// Factorises a matrix, given by all its entries.
     ///
     /// # Errors
     /// [`SingularMatrix`]
     ///
     /// # Panics
-    /// Unless there are k² numbers.
+    /// If `matrix` does not consist of k² numbers.
     pub fn factorise(&mut self, matrix: &[f64]) -> Result<(), SingularMatrix> {
         let k = self.lower.rows();
         assert_eq!(matrix.len(), k * k, "a square matrix");

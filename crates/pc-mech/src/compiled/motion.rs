@@ -23,10 +23,12 @@ use crate::error::MechError;
 use crate::system::signals::Signals;
 use crate::system::system::System;
 
-/// The first-order system ẏ = f(t, y) of y = (x, η, z), compiled; owned and independent of the graph.
+/// The compiled first-order system ẏ = f(t, y) for y = (x, η, z), which owns its data and is independent of the
+/// graph.
 #[derive(Clone, Debug)]
 pub struct Motion {
-    /// n coordinates, then k quasi-velocities or momenta, then first-order states.
+    /// The names of the n coordinates, then of the k quasi-velocities or momenta, then of the first-order
+    /// states.
     pub(super) names: Vec<String>,
     pub(super) coordinates: usize,
     pub(super) states: usize,
@@ -45,11 +47,11 @@ pub struct Motion {
     pub(super) signals: Signals,
     /// The conditions under which the state determines velocities.
     pub(super) charts: Vec<Chart>,
-    /// How far the constraints are from losing rank, and the motion across a place where they do.
+    /// How far the constraints are from losing rank, and the motion across a state where they do.
     pub(super) watch: Watch,
     /// Where f jumps, if derivatives were compiled.
     pub(super) jumps: Vec<RateJump>,
-    /// f on one side of each surface, if it has several pieces.
+    /// The motion held on one side of each surface between pieces, if f is piecewise.
     pub(super) switches: Option<Box<Switches>>,
 }
 
@@ -61,12 +63,11 @@ pub(super) enum Form {
     InMomenta(Box<InMomenta>),
 }
 
-/// The motion of (x, y), y = p(t, x, η) = ∂L/∂η, derived from that of (x, η): with η of
+/// The motion of (x, y), y = p(t, x, η) = ∂L/∂η, derived from that of (x, η), where η solves
 ///
 ///   M η − Cᵀ μ = y − p_0,   C η = −c_0,
 ///
-/// or of p − Cᵀ μ = y, g = 0, which satisfies the constraints and is regular wherever they are (μ = 0 on
-/// them),
+/// or p − Cᵀ μ = y, g = 0, which satisfies the constraints and is regular wherever they are (μ = 0 on them),
 ///
 ///   ẏ = ∂p/∂t + (∂p/∂x) ẋ + (∂p/∂z) ż + M η̇ = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α.
 ///
@@ -89,45 +90,46 @@ pub(crate) struct InMomenta {
     pub(super) state: Vec<f64>,
     pub(super) projected: Vec<f64>,
     pub(super) rates: Vec<f64>,
-    /// The derivative of (ẋ, η̇, ż) by (x, η, z), column after column.
+    /// The derivative of (ẋ, η̇, ż) with respect to (x, η, z), column by column.
     pub(super) of_inner: Vec<f64>,
 }
 
-/// Derivatives with respect to symbols q from (t, (x, η, z, η̇)): the columns of ∂ẏ/∂q and (−∂p/∂q, ∂g/∂q)
-/// one after the other; then those of ∂ẏ/∂η and of M.
+/// Computes derivatives with respect to symbols q, from (t, (x, η, z, η̇)): the columns of ∂ẏ/∂q and (−∂p/∂q,
+/// ∂g/∂q) one after the other; then those of ∂ẏ/∂η and of M.
 #[derive(Clone, Debug)]
 pub(super) struct Slopes {
     pub(super) symbols: usize,
     pub(super) multipliers: usize,
     pub(super) entries: Evaluator,
     pub(super) values: Vec<f64>,
-    /// The derivatives of (ẋ, η̇, ż) by q at fixed (x, η, z), those of (η, μ) by q and y, and of (ẋ, ẏ, ż) by both.
+    /// The derivatives of (ẋ, η̇, ż) with respect to q at fixed (x, η, z), those of (η, μ) with respect to q and y,
+    /// and those of (ẋ, ẏ, ż) with respect to both.
     pub(super) by_symbol: Vec<f64>,
     pub(super) of_unknowns: Vec<f64>,
     pub(super) columns: Vec<f64>,
 }
 
-/// The surfaces of a motion, and the motion on given sides of them.
+/// The surfaces between the pieces of a motion, and the motion on given sides of them.
 #[derive(Clone, Debug)]
 pub(crate) struct Switches {
-    /// The texts of the functions.
+    /// The functions that vanish on the surfaces, as text.
     pub(super) names: Vec<String>,
-    /// f with the sides as parameters after those of the system.
+    /// The motion with the sides as further parameters, after those of the system.
     pub(super) motion: Box<Motion>,
     /// g from (t, y, p, sides).
     pub(super) functions: Evaluator,
     pub(super) slopes: SurfaceSlopes,
-    /// Whether g contains inputs that tables give.
+    /// Whether g contains inputs given by tables.
     pub(super) follows_tables: bool,
-    /// The motion between sides, for observables that change with them.
+    /// The motion on sides between −1 and 1, for observables that depend on the side.
     pub(super) observing: Option<Box<Motion>>,
-    /// The sides on which f is held, if it is.
+    /// The sides on which the motion is held, if it is held.
     pub(super) sides: Option<Vec<f64>>,
-    /// The series of the motion along these surfaces, made on first use.
+    /// The motion along these surfaces, made on first use.
     pub(super) along: Option<Along>,
 }
 
-/// The motion along surfaces.
+/// The Taylor series of the motion along surfaces.
 #[derive(Clone, Debug)]
 pub(super) struct Along {
     pub(super) surfaces: Vec<usize>,
@@ -170,8 +172,8 @@ impl Motion {
         &mut self.parameters
     }
 
-    /// The values, from place `first` on, of inputs on which M does not depend, such as external forces;
-    /// mutable.
+    /// The values, from index `first` on, of inputs on which M does not depend, such as external forces, to be
+    /// changed.
     pub(crate) fn inputs_mut(&mut self, first: usize) -> &mut [f64] {
         match &mut self.form {
             Form::InMomenta(motion) => motion.inner_mut().inputs_mut(first),
@@ -179,7 +181,8 @@ impl Motion {
         }
     }
 
-    /// The motion in quasi-velocities from which one in momenta under constraints is made; else this one.
+    /// The motion in quasi-velocities from which a motion in momenta under constraints is derived; for other
+    /// motions, this one.
     pub fn in_quasi_velocities(&self) -> &Motion {
         match &self.form {
             Form::InMomenta(motion) => motion.inner(),
@@ -188,7 +191,7 @@ impl Motion {
     }
 
     /// The same motion with the values of some of its parameters read from tables at each evaluation. No step
-    /// of an integrator crosses their times.
+    /// of an integrator crosses the times in these tables.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -213,7 +216,7 @@ impl Motion {
     /// ```
     ///
     /// # Panics
-    /// If one of their places is not that of a parameter.
+    /// If one of their indices is not that of a parameter.
     #[must_use]
     pub fn driven_by(mut self, signals: Signals) -> Motion {
         assert!(signals.places().all(|place| place < self.parameters().len()), "places of parameters");
@@ -231,7 +234,7 @@ impl Motion {
         self
     }
 
-    /// The tables that it is driven by.
+    /// The tables by which the motion is driven.
     pub fn signals(&self) -> &Signals {
         &self.in_quasi_velocities().signals
     }
@@ -267,8 +270,8 @@ impl Motion {
         self.watch(t, y, values, true);
     }
 
-    /// The observables of the equations as they stand, even where the motion slides along a surface: on the side given
-    /// by the signs at y, which may be due to rounding.
+    /// The observables on the side of each surface that the signs at y indicate, even where the motion slides along
+    /// the surface; the signs may then be due to rounding.
     ///
     /// # Panics
     /// As [`observe`](Motion::observe).
@@ -278,8 +281,8 @@ impl Motion {
         values
     }
 
-    /// Writes the observables; without accelerations unless `solved`: those that contain one are then not
-    /// finite.
+    /// Writes the observables. Unless `solved`, accelerations are not computed, and observables that contain
+    /// one are not finite.
     pub(crate) fn watch(&mut self, t: f64, y: &[f64], values: &mut [f64], solved: bool) {
         assert_eq!(y.len(), self.names.len(), "length of the state");
         assert_eq!(values.len(), self.observable_names.len(), "number of observables");
@@ -307,8 +310,9 @@ impl Motion {
         }
     }
 
-    /// The motion of a system. It does not [lead](VectorField::leads) past a place where velocities and the
-    /// quasi-velocities defined by them no longer determine each other.
+    /// The motion restricted to where its state determines the velocities of `system`. It does not
+    /// [lead](VectorField::leads) past a state where velocities and the quasi-velocities defined by them no
+    /// longer determine each other.
     ///
     /// # Errors
     /// [`MechError`] if the frame contains a symbol that is neither a coordinate nor a parameter.
@@ -316,8 +320,8 @@ impl Motion {
         Ok(Motion { charts: Chart::of(system)?.into_iter().collect(), ..self })
     }
 
-    /// The motion in other quasi-velocities η' = A η + A_0, with A for all those of the system in order; it
-    /// also does not lead past a place where η' do not determine η.
+    /// The motion in other quasi-velocities η' = A η + A_0, with A for all those of the system, in order; it
+    /// also does not lead past a state where η' do not determine η.
     ///
     /// # Errors
     /// As there.
@@ -329,8 +333,8 @@ impl Motion {
         Ok(Motion { charts: Chart::of_change(system, change)?.into_iter().collect(), ..self })
     }
 
-    /// The motion in independent quasi-velocities of a system; it also does not lead past a place where this
-    /// square matrix, by which constraints determine the others, is singular.
+    /// The motion in independent quasi-velocities of a system; it also does not lead past a state where this
+    /// square matrix, through which constraints determine the others, is singular.
     ///
     /// # Errors
     /// As there.
@@ -374,7 +378,7 @@ impl Motion {
         }
     }
 
-    /// Its parts, if its state contains momenta under constraints.
+    /// The parts of a motion whose state contains momenta under constraints.
     pub(crate) fn in_momenta(&mut self) -> Option<&mut InMomenta> {
         match &mut self.form {
             Form::InMomenta(motion) => Some(motion),
@@ -396,12 +400,12 @@ impl Motion {
         self
     }
 
-    /// The motion under the constraints of these names.
+    /// The motion under the constraints with these names.
     pub(crate) fn on_surface(self, constraints: Vec<String>, surface: Surface) -> Motion {
         Motion { constraints, surface: Some(Box::new(surface)), ..self }
     }
 
-    /// Projects to the values of these integrals from now on; returns the previous ones.
+    /// Makes the motion project to the values of these integrals from now on; returns the previous integrals.
     pub(crate) fn set_kept(&mut self, integrals: Option<KeptIntegrals>) -> Option<KeptIntegrals> {
         if let Form::InMomenta(motion) = &mut self.form {
             return motion.inner_mut().set_kept(integrals);
@@ -409,7 +413,7 @@ impl Motion {
         std::mem::replace(&mut self.kept, integrals.map(Box::new)).map(|kept| *kept)
     }
 
-    /// A number that distinguishes this motion from those of other equations or names: a digest of the names of
+    /// A number that distinguishes this motion from motions with other equations or names: a digest of the names of
     /// states, parameters and constraints, and of the programs of f. It is the same on every run, whatever the values
     /// of the parameters.
     pub fn digest(&self) -> u64 {
@@ -430,9 +434,9 @@ impl Motion {
         }
     }
 
-    /// Operations of one evaluation of the right-hand side, kinematics included; without those of the
-    /// factorisation if M is factorised in numbers, and with those of one iteration if y = ∂L/∂η is solved for η
-    /// by Newton's method.
+    /// The number of operations of one evaluation of the right-hand side, kinematics included. It excludes the
+    /// factorisation if M is factorised numerically, and includes one iteration if y = ∂L/∂η is solved for η by
+    /// Newton's method.
     pub fn cost(&self) -> Cost {
         match &self.form {
             Form::Unrolled(unrolled) => unrolled.cost(self.names.len()),
@@ -449,8 +453,8 @@ impl Motion {
         }
     }
 
-    /// The parameters of [`machine_code`](Motion::machine_code), for the current values: these, and results
-    /// that depend on them alone. `None` if M is factorised in numbers.
+    /// The parameters of [`machine_code`](Motion::machine_code), for the current values: the parameters of the
+    /// motion, and results that depend on them alone. `None` if M is factorised numerically.
     pub fn code_parameters(&mut self) -> Option<&[f64]> {
         match &mut self.form {
             Form::Unrolled(unrolled) => Some(unrolled.code_parameters(&self.parameters)),
@@ -459,7 +463,7 @@ impl Motion {
     }
 
     /// The pivots of M that do not depend on the state, for the current parameters, as [`MachineCode::is_regular`]
-    /// takes them. None if M is factorised in numbers.
+    /// expects them. None if M is factorised numerically.
     pub fn fixed_pivots(&mut self) -> Option<&[f64]> {
         match &mut self.form {
             Form::Unrolled(unrolled) => Some(unrolled.fixed_pivots(self.names.len(), &self.parameters)),
@@ -467,7 +471,7 @@ impl Motion {
         }
     }
 
-    /// The program whose first outputs are ẏ; none if M is factorised in numbers.
+    /// The program whose first outputs are ẏ; none if M is factorised numerically.
     pub(super) fn program_of_rates(&self) -> Option<&Program> {
         match &self.form {
             Form::Unrolled(unrolled) => unrolled.programs().next(),
@@ -475,21 +479,21 @@ impl Motion {
         }
     }
 
-    /// Whether M is factorised in numbers.
+    /// Whether M is factorised numerically.
     #[cfg(test)]
     pub(crate) fn is_staged(&self) -> bool {
         matches!(self.form, Form::Staged(_))
     }
 
-    /// ẏ with each component of the state, and each number of the equations if these are solved in numbers,
-    /// multiplied by the next `factor`.
+    /// Computes ẏ with each component of the state, and each number in the equations if these are solved
+    /// numerically, multiplied by the next value of `factor`.
     pub(crate) fn perturbed_rates(
         &mut self,
         t: f64,
         y: &[f64],
         mut factor: impl FnMut() -> f64,
     ) -> Result<(Vec<f64>, Vec<f64>), MechError> {
-        // Constraints mix velocities: the remainder of one velocity may be rounding of the largest.
+        // Constraints mix velocities: the remainder of one velocity may be a rounding error of the largest.
         let moving = self.coordinates()..y.len() - self.states();
         let fastest = y[moving.clone()].iter().fold(0.0f64, |fastest, eta| fastest.max(eta.abs()));
         let least = |i: usize| if moving.contains(&i) { fastest } else { 0.0 };

@@ -1,4 +1,4 @@
-//! How far a state is off the constraints, and how it is moved onto them.
+//! Measures how far a state is off the constraints, and moves it onto them.
 
 use pc_expr::Failure;
 
@@ -39,11 +39,12 @@ impl Motion {
         }
     }
 
-    /// Moves a state to the constraints alone, with the coordinates and the quasi-velocities of these indices
-    /// left as they are: the others follow by the shortest path in the kinetic metric.
+    /// Moves a state onto the constraints, disregarding kept integrals. The coordinates and the
+    /// quasi-velocities with these indices stay as they are; the others are moved by the shortest path in the
+    /// kinetic metric.
     ///
     /// # Errors
-    /// A [`Failure`] where no such state exists, or the other components cannot reach it.
+    /// A [`Failure`] where no such state exists or can be reached.
     pub fn project_holding(
         &mut self,
         t: f64,
@@ -71,9 +72,9 @@ impl Motion {
         outcome.map_err(|failure| self.failure(failure, t, y))
     }
 
-    /// Moves the η of a state onto the constraints, and leaves its x as they are. The quasi-velocities of the indices
-    /// `held` change only as far as the constraints on them alone demand; the others then follow, both by the shortest
-    /// path in the kinetic metric.
+    /// Moves the η of a state onto the constraints, and leaves its x as they are. The quasi-velocities with the
+    /// indices `held` change only as far as constraints on them alone demand; the others follow. Both move by the
+    /// shortest path in the kinetic metric.
     ///
     /// # Errors
     /// A [`Failure`] where no such velocities are found.

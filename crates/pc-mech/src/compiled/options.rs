@@ -1,9 +1,9 @@
-//! Options of compilation.
+//! Options for compilation.
 
 use pc_expr::Backend;
 
-/// The parts to compile besides the right-hand side, and the kernel. Each derivative takes time to
-/// derive, above all the Jacobian of a large system.
+/// The parts to compile besides the right-hand side, and the kernel. Each derivative takes time to compile,
+/// above all the Jacobian of a large system.
 ///
 /// ```
 /// use pc_mech::{CompileOptions, Graph, System, VectorField};
@@ -33,16 +33,16 @@ pub struct CompileOptions {
     pub(crate) elimination: TreeElimination,
 }
 
-/// The method that solves for accelerations of [bodies joined by joints](crate::Tree). The numbers are the same up
-/// to rounding.
+/// The method that solves for the accelerations of [bodies joined by joints](crate::Tree). All methods give the
+/// same numbers up to rounding errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TreeElimination {
-    /// By joints if that takes fewer operations, as for all large trees.
+    /// Joint by joint if that takes fewer operations, as it does for all large trees.
     #[default]
     Shorter,
-    /// Joint after joint: operations grow as the number of bodies does.
+    /// Joint by joint: the number of operations grows in proportion to the number of bodies.
     ByJoints,
-    /// With the mass matrix of the whole tree.
+    /// By factorising the mass matrix of the whole tree.
     Whole,
 }
 
@@ -61,7 +61,7 @@ impl Default for CompileOptions {
 }
 
 impl From<Backend> for CompileOptions {
-    /// The usual choice for another kernel.
+    /// The default options with another kernel.
     fn from(backend: Backend) -> CompileOptions {
         CompileOptions::default().backend(backend)
     }
@@ -74,19 +74,19 @@ impl CompileOptions {
         CompileOptions { backend, ..self }
     }
 
-    /// Compile ∂f/∂y, which Newton iterations of implicit methods need.
+    /// Whether to compile ∂f/∂y, which Newton iterations of implicit methods need.
     #[must_use]
     pub fn jacobian(self, jacobian: bool) -> CompileOptions {
         CompileOptions { jacobian, ..self }
     }
 
-    /// Compile products (∂f/∂y) v, which take about as long as f itself.
+    /// Whether to compile products (∂f/∂y) v, which take about as long as f itself.
     #[must_use]
     pub fn jvp(self, jvp: bool) -> CompileOptions {
         CompileOptions { jvp, ..self }
     }
 
-    /// Compile ∂f/∂p for the parameters p.
+    /// Whether to compile ∂f/∂p for the parameters p.
     #[must_use]
     pub fn parameter_jacobian(self, parameter_jacobian: bool) -> CompileOptions {
         CompileOptions { parameter_jacobian, ..self }
@@ -98,8 +98,8 @@ impl CompileOptions {
         CompileOptions { elimination, ..self }
     }
 
-    /// Compile ∂f/∂t, which Rosenbrock's methods need; under constraints in momenta only together with the
-    /// Jacobian.
+    /// Whether to compile ∂f/∂t, which Rosenbrock's methods need; for a motion in momenta under constraints
+    /// this requires the Jacobian as well.
     #[must_use]
     pub fn time_derivative(self, time_derivative: bool) -> CompileOptions {
         CompileOptions { time_derivative, ..self }

@@ -1,7 +1,7 @@
-//! Bounds of the rounding errors of functions.
+//! Bounds on the rounding errors of functions.
 //!
-//! The bound is an expression, compiled with its function, because a projection compares with it at each
-//! state of a motion; a numerical weight, which identifies zeros at a few points of a derivation, is in
+//! The bound is an expression, compiled with its function, because a projection uses it at each state of a
+//! motion; a numerical bound, which identifies zeros at a few points of a derivation, is in
 //! `pc-expr/src/identity/running_error.rs`.
 
 use std::ops::{Add, Mul, Neg};
@@ -13,18 +13,18 @@ use pc_expr::{
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::point::Point;
 
-/// The unit of errors. An operation errs by a quarter of it; a long sum, for which only the roundings of the
-/// terms are counted, by more.
+/// The unit of errors. An operation has an error of a quarter of it; a long sum, for which only the rounding
+/// errors of the terms are counted, may have a larger one.
 const UNIT: f64 = 2.0 * f64::EPSILON;
 
 /// Keeps a quotient of two zeros from being NaN.
 const TINY: f64 = 1e-300;
 
-/// The threshold of numbers with fewer digits, whose spacing is constant, in the units of errors. It is
-/// fourfold, since factors of so small a number round again.
+/// The magnitude below which numbers have fewer digits and a constant spacing, in units of errors. It is
+/// taken four times as large, since products with so small a number are rounded again.
 const SPACING: f64 = 4.0 * f64::MIN_POSITIVE;
 
-/// Functions with bounds of their rounding errors, compiled.
+/// Compiled functions with bounds on their rounding errors.
 #[derive(Clone, Debug)]
 pub(crate) struct Measured {
     functions: Evaluator,
@@ -82,18 +82,18 @@ impl Measured {
         &self.values[..self.values.len() / 2]
     }
 
-    /// A bound of the rounding error of the function number `place`; not finite if a part of it has no
-    /// derivative.
+    /// A bound on the rounding error of the function with index `place`; not finite if a part of the
+    /// function has no derivative.
     pub(crate) fn error(&self, place: usize) -> f64 {
         UNIT * self.values[self.values.len() / 2 + place]
     }
 
-    /// The bounds of the rounding errors of all functions.
+    /// The bounds on the rounding errors of all functions.
     pub(crate) fn errors(&self) -> impl Iterator<Item = f64> {
         (0..self.values().len()).map(|place| self.error(place))
     }
 
-    /// The largest of the values in units of the bound of its error: at most 1 if they consist of rounding
+    /// The largest ratio of a value to the bound on its error: at most 1 if the values are rounding errors
     /// only.
     pub(crate) fn in_errors(&self) -> f64 {
         let ratio = |(place, value): (usize, &f64)| match self.error(place) {
@@ -105,8 +105,8 @@ impl Measured {
     }
 }
 
-/// An expression with the first-order bound of its rounding errors, in units of the last digit of one. The
-/// bound is at least the absolute value, which includes the roundings of sums in those of their terms.
+/// An expression with a first-order bound on its rounding errors, in units of the last digit of 1.0. The bound
+/// is at least the absolute value, so that the rounding errors of sums are included in those of their terms.
 #[derive(Clone, Copy)]
 struct WithError<'g> {
     value: Expr<'g>,
@@ -199,7 +199,7 @@ impl Scalar for WithError<'_> {
     }
 }
 
-/// ∂f/∂x_i at `values`, derived in a separate graph with a symbol for each argument.
+/// The derivatives ∂f/∂x_i at `values`, computed in a separate graph with a symbol for each argument.
 fn slopes<'g>(function: Function, values: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let graph = Graph::new();
     let symbols: Vec<_> = (0..values.len()).map(|i| graph.symbol(&format!("x{i}"))).collect();

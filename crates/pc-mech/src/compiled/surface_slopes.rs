@@ -5,11 +5,11 @@ use pc_expr::{Backend, Evaluator, Expr, Program};
 use crate::compiled::first_order::FirstOrder;
 use crate::error::MechError;
 
-/// The derivatives of the functions by time, state and parameters.
+/// The derivatives of the functions with respect to time, state and parameters.
 #[derive(Clone, Debug)]
 pub(crate) struct SurfaceSlopes {
     pub(super) entries: Evaluator,
-    /// Surface and column of each entry: time, state, parameters.
+    /// The surface and the column of each entry; the columns are time, state, parameters.
     pub(super) places: Vec<(usize, usize)>,
     values: Vec<f64>,
     pub(super) by_parameters: bool,

@@ -1,4 +1,4 @@
-//! A motion of several pieces, held on one of them.
+//! A piecewise motion, held on one of its pieces.
 
 use std::sync::Arc;
 
@@ -15,16 +15,16 @@ use crate::compiled::surface_slopes::SurfaceSlopes;
 use crate::error::MechError;
 use crate::system::signals::Signals;
 
-/// Motions with more surfaces are not held.
+/// Motions with more surfaces than this are not held.
 const MOST: usize = 256;
-/// Relative difference above which rates are not a sum of the changes at surfaces.
+/// The relative difference above which rates do not count as a sum of the changes at surfaces.
 const ADDS_UP: f64 = 1e-9;
-/// A surface that will be reached within this fraction of the time counts as reached.
+/// A surface that will be reached within this fraction of the time t counts as reached.
 const AT_ONCE: f64 = 1e-9;
 
 impl<'g> FirstOrder<'g> {
     /// The motion held on its pieces; none if it has a single piece, or if a surface contains unknowns that are solved
-    /// for in numbers.
+    /// for numerically.
     ///
     /// # Errors
     /// As for [`Program::new`].
@@ -100,8 +100,8 @@ fn written_out<'g>(graph: &'g Graph, surfaces: &[Surface<'g>]) -> Vec<String> {
 }
 
 impl<'g> FirstOrder<'g> {
-    /// The motion of a system on sides between −1 and 1, with the observables of this one; none if these depend neither
-    /// on sides nor on solved unknowns.
+    /// The motion of a system on sides between −1 and 1, with the observables of this system; none if these depend
+    /// neither on sides nor on solved unknowns.
     ///
     /// # Errors
     /// As for [`Program::new`].
@@ -119,7 +119,7 @@ impl<'g> FirstOrder<'g> {
         if !contains(graph, &held.values, &moved) {
             return Ok(None);
         }
-        // What only observables pass has the side of its sign.
+        // On surfaces that occur in observables alone, the side is given by the sign.
         let mut own: Vec<(Expr<'g>, Expr<'g>)> = Vec::new();
         for surface in &held.surfaces[surfaces.len()..] {
             let function = graph.substitute(&[surface.function], &own)[0];
@@ -165,7 +165,7 @@ fn contains<'g>(graph: &'g Graph, expressions: &[Expr<'g>], symbols: &[Expr<'g>]
 }
 
 impl Switches {
-    /// Takes over the values of the parameters.
+    /// Copies the values of the parameters.
     pub(crate) fn follow(&mut self, parameters: &[f64]) {
         let motion = &mut self.motion;
         let moved = |&place: &usize| {
@@ -179,7 +179,7 @@ impl Switches {
         }
     }
 
-    /// Reads inputs from these tables.
+    /// Makes the motion read inputs from these tables.
     pub(crate) fn drive(&mut self, signals: &Signals) {
         let motion = Motion::clone(&self.motion);
         *self.motion = motion.driven_by(signals.clone());
@@ -202,9 +202,9 @@ impl Switches {
     /// Writes the observables where the motion slides along a surface at (t, y); false if it does not, or where none of
     /// them changes from one side to the other.
     ///
-    /// They are those of Filippov's combination: for a body held by friction, no acceleration, and the friction that
-    /// holds it. It slides if f leads back to the surface from both sides and reaches it within a time at the level
-    /// of rounding.
+    /// They are those of Filippov's combination: for a body held by friction, zero acceleration and the friction
+    /// force that holds it. The motion slides if f leads back to the surface from both sides and reaches it within a
+    /// time as short as a rounding error.
     pub(crate) fn observe(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> bool {
         if self.observing.is_none() {
             return false;
@@ -222,7 +222,7 @@ impl Switches {
         true
     }
 
-    /// The sides of all surfaces at (t, y), σ for those along which the motion slides; none if it slides along none.
+    /// The sides of all surfaces at (t, y), σ for those along which the motion slides; none if it does not slide.
     fn weights(&mut self, t: f64, y: &[f64]) -> Option<Vec<f64>> {
         let mut functions = vec![f64::NAN; self.names.len()];
         let mut sides = vec![1.0; self.names.len()];
@@ -256,7 +256,7 @@ impl Switches {
         along.iter().all(|side| side.abs() <= 1.0 + ADDS_UP).then_some(along)
     }
 
-    /// The motion on the sides held.
+    /// The rates of the motion on the sides held.
     ///
     /// # Errors
     /// As [`Motion::rhs`](VectorField::rhs).
@@ -270,7 +270,7 @@ impl Switches {
         }
     }
 
-    /// (∂f/∂y) v, where the motion slides as a difference quotient.
+    /// Computes (∂f/∂y) v; where the motion slides, as a difference quotient.
     pub(crate) fn jvp(&mut self, t: f64, y: &[f64], v: &[f64], product: &mut [f64]) -> Result<(), Failure> {
         if self.sliding().is_none() {
             return self.motion.jvp(t, y, v, product);
@@ -288,7 +288,7 @@ impl Switches {
         })
     }
 
-    /// ∂f/∂y, column after column.
+    /// Computes ∂f/∂y, column by column.
     pub(crate) fn jacobian(&mut self, t: f64, y: &[f64], entries: &mut [f64]) -> Result<(), Failure> {
         if self.sliding().is_none() {
             return self.motion.jacobian(t, y, entries);
@@ -302,7 +302,7 @@ impl Switches {
         Ok(())
     }
 
-    /// ∂f/∂p, column after column.
+    /// Computes ∂f/∂p, column by column.
     pub(crate) fn parameter_jacobian(
         &mut self,
         t: f64,
@@ -328,7 +328,7 @@ impl Switches {
         Ok(())
     }
 
-    /// The central difference quotient of rates as a function of a step.
+    /// The central difference quotient of the rates, which are given as a function of a step.
     fn quotient(
         &mut self,
         step: f64,
@@ -342,7 +342,7 @@ impl Switches {
         Ok(())
     }
 
-    /// The series of the motion on the sides held.
+    /// The Taylor series of the motion on the sides held.
     ///
     /// # Errors
     /// As [`Motion::expand`](VectorField::expand).
@@ -354,7 +354,7 @@ impl Switches {
         self.motion.expand(t, y, &[], order)
     }
 
-    /// The series of the motion on the sides held, with its derivatives with respect to `columns`.
+    /// The Taylor series of the motion on the sides held, with its derivatives with respect to `columns`.
     ///
     /// # Errors
     /// As [`Motion::expand_varied`](VectorField::expand_varied).
@@ -386,8 +386,8 @@ impl Switches {
         }
     }
 
-    /// The series of the motion along the surfaces whose sides are 0, with its derivatives with respect to
-    /// `columns`.
+    /// The Taylor series of the motion along the surfaces whose sides are 0, with its derivatives with respect
+    /// to `columns`.
     ///
     /// # Errors
     /// As [`Sliding::of`]; also if f is not a sum of the changes at these surfaces.
@@ -408,7 +408,7 @@ impl Switches {
             });
         }
         let above: Vec<f64> = sides.iter().map(|side| if *side < 0.0 { -1.0 } else { 1.0 }).collect();
-        // What is left of forces that cancel is measured by these.
+        // The remainder of forces that cancel is compared with these.
         let mut beside = vec![f64::NAN; y.len()];
         self.rates(&above, t, y, &mut beside)?;
         let Some(Along { program, series, .. }) = &mut self.along else {
@@ -426,7 +426,7 @@ impl Switches {
         Ok(series)
     }
 
-    /// The program of the motion along some of this many surfaces; none if f is not a program.
+    /// The program of the motion along `surfaces`, out of `len` in all; none if f is not a program.
     fn program_along(&self, surfaces: &[usize], len: usize) -> Option<Program> {
         let program = self.motion.program_of_rates()?;
         let (dim, first) = (program.state_len(), self.motion.parameters.len() - len);
@@ -447,7 +447,7 @@ impl Switches {
         }
     }
 
-    /// Reads the tables at t.
+    /// Sets the inputs to the values of the tables at t.
     fn read(&mut self, t: f64) {
         if self.follows_tables && !self.motion.signals.is_empty() {
             // Where a table has no value, f fails.

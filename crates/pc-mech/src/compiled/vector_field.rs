@@ -12,7 +12,8 @@ use crate::compiled::motion::{Form, Motion, Switches};
 use crate::compiled::point::Point;
 use crate::error::{EvaluationError, FrameError, MechError};
 
-/// The most repetitions of a projection: after this many, even a long step has shrunk to rounding.
+/// The maximum number of repetitions of a projection: after this many, even a long step has shrunk to a
+/// rounding error.
 const MOST_RETURNS: usize = 4;
 
 impl Motion {
@@ -22,7 +23,7 @@ impl Motion {
         self.quaternions.normalise(y);
         if let Some(surface) = &mut self.surface {
             surface.project(t, y, &self.parameters)?;
-            // A step along the constraints leaves the unit sphere by its square.
+            // A step along the constraints leaves the unit sphere by a distance of the order of its square.
             for _ in 0..MOST_RETURNS {
                 if !self.quaternions.normalise(y) {
                     break;
@@ -36,7 +37,7 @@ impl Motion {
         Ok(())
     }
 
-    /// Reads the tables, if there are any.
+    /// Sets inputs to the values of the tables at t, if there are any.
     #[inline]
     pub(super) fn read_signals(&mut self, t: f64) -> Result<(), Failure> {
         if self.signals.is_empty() {
@@ -99,7 +100,7 @@ impl VectorField for Motion {
         }
         if let Some(switches) = self.holding() {
             let written = switches.rhs(t, y, ydot);
-            // What overflows grows on from the surface: a shorter step ends before it does.
+            // A state that overflows moves away from the surface: a shorter step ends before it does.
             if is_written(&written) || ydot.iter().any(|rate| rate.is_infinite()) {
                 return written;
             }
@@ -358,20 +359,20 @@ impl VectorField for Motion {
     }
 }
 
-/// Whether a held motion has given a value: beyond a surface it may have none, but the motion on the other
+/// Whether a held motion has produced a value: beyond a surface it may have none, but the motion on the other
 /// side may have one.
 fn is_written(outcome: &Result<(), Failure>) -> bool {
     outcome.as_ref().err().is_none_or(|failure| !failure.is_recoverable())
 }
 
 impl Motion {
-    /// The motion on its sides, while it is held on them.
+    /// The surfaces and sides of the motion, while it is held on them.
     #[inline]
     fn holding(&mut self) -> Option<&mut Switches> {
         self.switches.as_deref_mut().filter(|switches| switches.holds())
     }
 
-    /// [`leads`](VectorField::leads) with these rates.
+    /// As [`leads`](VectorField::leads), with these rates.
     pub(super) fn leads_by(
         &mut self,
         from: (f64, &[f64]),
@@ -401,7 +402,7 @@ impl Motion {
         }
     }
 
-    /// The reason why there are no series, if there are none.
+    /// Returns, as an error, why there are no Taylor series, if there are none.
     fn check_series(&self) -> Result<(), Failure> {
         let because = match &self.form {
             Form::Unrolled(_) if self.signals.is_empty() => return Ok(()),
@@ -416,7 +417,7 @@ impl Motion {
 }
 
 impl Motion {
-    /// ∂f/∂t, one number per component; inputs given by tables count as constant parameters.
+    /// Writes ∂f/∂t, one number per component; inputs given by tables count as constant parameters.
     ///
     /// # Errors
     /// As [`rhs`](VectorField::rhs), and where it was not [compiled](crate::CompileOptions::time_derivative).
@@ -431,7 +432,7 @@ impl Motion {
         outcome.map_err(|failure| self.failure(failure, t, y))
     }
 
-    /// ẏ = f(t, y), one number per component.
+    /// The rates ẏ = f(t, y), one number per component.
     ///
     /// # Errors
     /// As for [`rhs`](VectorField::rhs), if f is not defined there.

@@ -29,13 +29,13 @@ impl<'g> BodyReaction<'g> {
         self.turns
     }
 
-    /// The force λ_α f_α of the constraint of that index, with the symbol λ_α, in terms of (t, x, η), with the
-    /// length of the position. None if it is not determined.
+    /// The force λ_α f_α of the constraint with that index, with the symbol λ_α and otherwise in terms of (t,
+    /// x, η). It has as many components as the position. None if it is not determined.
     pub fn force(&self, constraint: usize) -> Option<&[Expr<'g>]> {
         self.forces.as_ref()?.get(constraint).map(Vec::as_slice)
     }
 
-    /// The torque λ_α n_α likewise, 3 components. None if it is not determined, or the body does not turn.
+    /// The torque λ_α n_α, likewise, with 3 components. None if it is not determined or the body does not turn.
     pub fn torque(&self, constraint: usize) -> Option<&[Expr<'g>]> {
         self.torques.as_ref()?.get(constraint).map(Vec::as_slice)
     }
@@ -49,19 +49,20 @@ impl<'g> System<'g> {
 }
 
 impl<'g> Multipliers<'g> {
-    /// The reactions on each body, by virtual work: forces F at the points r of the bodies and torques N with
+    /// The reactions on each body, found by virtual work: forces F at the points r of the bodies and torques N
+    /// with
     ///
     ///   Σ (F · ∂ṙ/∂η_s + N · ∂ω/∂η_s) = λ_α C_αs,   s = 1..k.
     ///
-    /// The force on a body is determined by this if ṙ can be varied independently of the velocities of all
-    /// other bodies, of its own ω, and of other velocities in the kinetic energy: if the rank of all these
-    /// derivatives is that of ∂ṙ/∂η plus that of the others. It is determined up to a part normal to all ṙ
-    /// that the coordinates allow; this part is left out, since it belongs to the supports implied by the
-    /// coordinates. The same holds for torques, with ω.
+    /// This determines the force on a body if ṙ can be varied independently of the velocities of all other
+    /// bodies, of its own ω, and of other velocities in the kinetic energy: the rank of the derivatives of all
+    /// of these with respect to η must be the rank of ∂ṙ/∂η plus that of the others. It is determined up to a
+    /// part normal to all ṙ that the coordinates allow; this part is left out, since it belongs to the supports
+    /// implied by the coordinates. The same holds for torques, with ω.
     ///
-    /// If the choice of coordinates ties velocities together, as the angle of a rod does for two masses on
-    /// it, the forces between them are not reactions of constraints, and share the load in a way that virtual
-    /// work leaves undetermined.
+    /// If the choice of coordinates ties velocities together, as the angle of a rod does for two masses on it,
+    /// the forces between them are not reactions of constraints, and virtual work does not determine how they
+    /// share the load.
     ///
     /// ```
     /// use pc_mech::{Constraint, Graph, Particle, System};
@@ -103,8 +104,8 @@ impl<'g> Multipliers<'g> {
     }
 }
 
-/// The derivatives of velocities by η, in blocks: ṙ and ω of the bodies, in their order, then the other
-/// velocities in L.
+/// The derivatives of velocities with respect to η, in blocks: ṙ and ω of the bodies, in their order, then the
+/// other velocities in L.
 struct Velocities<'a, 'g> {
     system: &'a System<'g>,
     blocks: Vec<Vec<Vec<Expr<'g>>>>,
@@ -132,8 +133,8 @@ impl<'a, 'g> Velocities<'a, 'g> {
         rank(&self.blocks.concat()) == rank(&self.blocks[b]) + rank(&others)
     }
 
-    /// z_α with (JᵀJ) z_α = C_α, J being all blocks: J z_α are the least forces. None if they do not determine
-    /// all velocities.
+    /// The z_α that solve (JᵀJ) z_α = C_α, where J consists of all blocks: J z_α are the least forces. None if
+    /// the blocks do not determine all quasi-velocities.
     fn of_reactions(&self, coefficients: &Matrix<Expr<'g>>) -> Option<Vec<Vec<Expr<'g>>>> {
         let (graph, rows, k) = (self.graph(), self.blocks.concat(), coefficients.columns());
         if graph.generic_rank(&rows) < k {

@@ -7,27 +7,28 @@ use crate::constraints::multipliers::Multipliers;
 use crate::equations::poincare::Equations;
 use crate::error::{ConstraintError, MechError};
 
-/// At most this many choices are compared by their equations.
+/// The maximum number of choices that are compared by their equations.
 const MOST_TRIED: usize = 20;
-/// Equations are compared only for at most this many constraints and a Lagrangian of at most this many
-/// operations.
+/// Equations are compared only if there are at most this many constraints and the Lagrangian has at most this
+/// many operations.
 const MOST_SOLVED: usize = 3;
 const LONGEST_TRIED: u32 = 1000;
 /// A choice is regular if its determinant, in the kinetic metric, is at least this fraction of the largest: the
-/// motion then stays away from singular equations for a while.
+/// motion then stays away from states with singular equations for a while.
 const REGULAR: f64 = 0.5;
-/// The shortest pivot must be at least this fraction of the largest: equations may lose a digit. (There is
-/// a second reason to derive few choices: forms made earlier in a graph influence later ones.)
+/// A pivot chosen because it is the shortest in print must be at least this fraction of the largest, so that
+/// equations lose at most a digit. (There is a second reason to derive few choices: forms made earlier in a
+/// graph influence later ones.)
 const PIVOT: f64 = 0.1;
 
-/// C at a state, its rows scaled to length one and its columns divided by the roots of the masses,
-/// independently of units.
+/// The matrix C at a state, with its rows scaled to length one and its columns divided by the square roots of
+/// the masses, so that it does not depend on units.
 struct Weighed {
     rows: Vec<Vec<f64>>,
 }
 
 impl<'g> Multipliers<'g> {
-    /// The equations with these quasi-velocities, k − m of them, as the
+    /// The equations with these k − m quasi-velocities as the
     /// [independent](Multipliers::in_independent_velocities) ones.
     ///
     /// # Errors
@@ -78,12 +79,13 @@ impl<'g> Multipliers<'g> {
         Ok(self.depending(dependent))
     }
 
-    /// The equations with independent quasi-velocities whose equations, as `derive` makes them, are shortest
-    /// in print among those that are regular at the values `at`; among equally short ones, those whose
-    /// constraints are solved best.
+    /// The equations with independent quasi-velocities whose equations, as `derive` makes them, are shortest in
+    /// print among those that are regular at the values `at`. Among equally short ones, those with the best
+    /// conditioned constraints are taken.
     ///
     /// With more than 20 choices, more than 3 constraints or a long Lagrangian no equations are compared: C is then
-    /// eliminated with the pivot that is shortest in print among those of at least a tenth of the largest.
+    /// eliminated, each time with the pivot that is shortest in print among those of at least a tenth of the
+    /// largest.
     ///
     /// # Errors
     /// The errors of [`dependent_at`](Multipliers::dependent_at).
@@ -191,7 +193,7 @@ impl Weighed {
     }
 }
 
-/// All choices of m out of k, in lexicographic order; `None` if there are more than are compared.
+/// All choices of m out of k, in lexicographic order; `None` if there are too many to be compared.
 fn choices(k: usize, m: usize) -> Option<Vec<Vec<usize>>> {
     let mut all: Vec<Vec<usize>> = vec![Vec::new()];
     for _ in 0..m {
@@ -208,7 +210,7 @@ fn choices(k: usize, m: usize) -> Option<Vec<Vec<usize>>> {
     (all.len() <= MOST_TRIED).then_some(all)
 }
 
-/// The length of equations, written out.
+/// The length of the equations when written out.
 fn printed_length(equations: &Equations<'_>) -> u64 {
     let mass = equations.mass_matrix().entries();
     let sides = mass.iter().chain(equations.right_hand_side()).chain(equations.velocities());

@@ -16,8 +16,8 @@ pub struct Constraint<'g> {
 }
 
 impl<'g> Constraint<'g> {
-    /// The condition that `expression` vanishes: on velocities, affine in η, if it contains a quasi-velocity, on
-    /// positions otherwise. The name is used in messages and reactions.
+    /// The condition that `expression` vanishes. It is a condition on velocities, affine in η, if it contains a
+    /// quasi-velocity, and one on positions otherwise. The name is used in messages and reactions.
     pub fn new(name: impl Into<String>, expression: Expr<'g>) -> Constraint<'g> {
         Constraint { name: name.into(), expression, nonlinear: false }
     }
@@ -67,7 +67,8 @@ impl<'g> Constraint<'g> {
         !system.quasi_velocities.iter().any(|&eta| self.expression.depends_on(eta))
     }
 
-    /// The condition on velocities: its expression if it is one on velocities, X_0 f + η_s X_s f otherwise.
+    /// The condition on velocities: the expression itself if it is a condition on velocities, X_0 f + η_s X_s f
+    /// otherwise.
     pub fn velocity(&self, system: &System<'g>) -> Expr<'g> {
         if !self.is_holonomic(system) {
             return self.expression;
@@ -78,7 +79,8 @@ impl<'g> Constraint<'g> {
         graph.directional(&[self.expression], &along)[0]
     }
 
-    /// C_s, length k, and c_0 of the [condition on velocities](Constraint::velocity) C_s η_s + c_0 = 0.
+    /// The k coefficients C_s and the term c_0 of the [condition on velocities](Constraint::velocity) C_s η_s +
+    /// c_0 = 0.
     ///
     /// # Errors
     /// [`ConstraintError::NotAffine`]

@@ -1,4 +1,5 @@
-//! Reactions as functions of the state: constraints of any kind in the equations of all velocities.
+//! Reactions as functions of the state, with which constraints of any kind enter the equations for all
+//! velocities.
 
 use pc_algebra::Matrix;
 use pc_expr::Expr;
@@ -10,9 +11,9 @@ use crate::error::{ConstraintError, MechError};
 use crate::system::system::System;
 
 impl<'g> Constraint<'g> {
-    /// Whether its reaction does no work during the motion: the power of λ ∂g/∂η_s is λ η_s ∂g/∂η_s, which
-    /// vanishes with g if it is a multiple of g. By Euler's theorem this holds if g is homogeneous in η; for
-    /// an affine g = C η + c_0, if c_0 = 0.
+    /// Whether the reaction of this constraint does no work during the motion: the power of λ ∂g/∂η_s is λ η_s
+    /// ∂g/∂η_s, which vanishes with g if it is a multiple of g. By Euler's theorem this holds if g is
+    /// homogeneous in η, and for an affine g = C η + c_0 if c_0 = 0.
     pub fn is_workless(&self, system: &System<'g>) -> bool {
         if !self.is_nonlinear() {
             return self.coefficients(system).is_ok_and(|(_, drift)| drift.is_zero());
@@ -35,7 +36,7 @@ impl<'g> Multipliers<'g> {
     ///
     ///   (C M⁻¹ Cᵀ) λ = −ċ − C M⁻¹ r,   ċ = (∂g/∂x) ẋ + ∂g/∂t,
     ///
-    /// length m, in terms of (t, x, η). They keep g constant, whatever its value.
+    /// m of them, in terms of (t, x, η). They keep g constant, whatever its value.
     ///
     /// ```
     /// use pc_mech::{Constraint, Graph, System};

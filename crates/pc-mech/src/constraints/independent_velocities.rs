@@ -15,14 +15,14 @@ const WELL: f64 = 1e-3;
 
 impl<'g> Multipliers<'g> {
     /// The same system in quasi-velocities that are independent, η_D = −C_D⁻¹ (C_I η_I + c_0): its equations (9) are
-    /// those of motion in redundant coordinates, which are
+    /// the equations of motion in redundant coordinates, which are
     ///
     ///   d/dt ∂L/∂ẋ_s − ∂L/∂x_s − b_js ∂L/∂x_j = Q_s   (14)–(16)
     ///
     /// with X_s = ∂/∂x_s + b_js ∂/∂x_j if the η are velocities. The dependent ones are those that the constraints
     /// determine best at the values `at` of time, coordinates, quasi-velocities and parameters. The equations are
-    /// singular where det C_D = 0, where the constraints themselves need not be. Its brackets are those of the system,
-    /// carried over as [`Elimination::structure_coefficients`] says, whatever the rank of the frame.
+    /// singular where det C_D = 0, even if the constraints themselves are not. The brackets follow from those of the
+    /// system, as described at [`Elimination::structure_coefficients`], whatever the rank of the frame.
     ///
     /// # Errors
     /// [`ConstraintError::Singular`] if the constraints are dependent there; [`ConstraintError::NotAffine`];
@@ -53,11 +53,11 @@ impl<'g> Multipliers<'g> {
         self.eliminated(&solved, structure)
     }
 
-    /// η_D = −C_D⁻¹ (C_I η_I + c_0): the quasi-velocities of the m indices `dependent`, each with its expression in the
-    /// k − m others.
+    /// Solves η_D = −C_D⁻¹ (C_I η_I + c_0): returns the quasi-velocities with the m indices `dependent`, each with its
+    /// expression in terms of the k − m others.
     ///
     /// # Errors
-    /// [`ConstraintError::NotAffine`] for one that is [nonlinear](crate::Constraint::nonlinear);
+    /// [`ConstraintError::NotAffine`] for a constraint that is [nonlinear](crate::Constraint::nonlinear);
     /// [`ConstraintError::Dependent`] if det C_D = 0 everywhere.
     pub fn solved_for(&self, dependent: &[usize]) -> Result<Vec<(Expr<'g>, Expr<'g>)>, MechError> {
         if let Some(constraint) = self.constraints().iter().find(|constraint| constraint.is_nonlinear()) {
@@ -104,7 +104,7 @@ impl<'g> Multipliers<'g> {
     /// to be [added](System::with_added_forces) to the forces.
     ///
     /// # Errors
-    /// [`ShapeError`](crate::ShapeError) if the number of structure coefficients does not fit.
+    /// [`ShapeError`](crate::ShapeError) if `structure` is for a different number of quasi-velocities.
     pub fn eliminated(
         &self,
         solved: &[(Expr<'g>, Expr<'g>)],
@@ -142,7 +142,7 @@ impl<'g> Multipliers<'g> {
         })
     }
 
-    /// The equations with a preference: the listed quasi-velocities, k − m of them, are taken as
+    /// The equations with a preference: the k − m listed quasi-velocities are taken as
     /// [independent](Multipliers::in_independent_velocities) wherever they determine the others well.
     #[must_use]
     pub fn preferring(mut self, independent: &[Expr<'g>]) -> Multipliers<'g> {
@@ -152,7 +152,7 @@ impl<'g> Multipliers<'g> {
         self
     }
 
-    /// Whether C_D, rows of C counted as of length one, is far from singular at these values.
+    /// Whether C_D, with the rows of C scaled to length one, is far from singular at these values.
     pub(super) fn determines(&self, dependent: &[usize], at: &[(Expr<'g>, f64)]) -> Result<bool, MechError> {
         let (system, c) = (self.equations().system(), self.coefficients());
         let values = system.graph().evaluate(&c.entries(), &[system.parameters(), at].concat())?;
@@ -162,8 +162,9 @@ impl<'g> Multipliers<'g> {
         Ok(LeastSquares::of(&square).is_ok_and(|square| square.reciprocal_condition() > WELL))
     }
 
-    /// The reactions λ in terms of (t, x) and independent quasi-velocities, each given with its acceleration. With the
-    /// dependent ones [solved for](Multipliers::solved_for), from their rows of M η̇ = r + Cᵀ λ,
+    /// The reactions λ in terms of (t, x) and independent quasi-velocities, each of which is given with its
+    /// acceleration. With the dependent ones [solved for](Multipliers::solved_for), from their rows of M η̇ = r + Cᵀ
+    /// λ,
     ///
     ///   C_αD λ_α = (M η̇ − r)_D,
     ///
@@ -212,7 +213,7 @@ impl<'g> Multipliers<'g> {
 
     /// The m indices of the quasi-velocities that the constraints determine best at the values `at` of time,
     /// coordinates and quasi-velocities, in ascending order, or the [preferred](Multipliers::preferring) ones
-    /// where they can be solved for; `at` may have other values of parameters.
+    /// where they can be solved for; `at` may override values of parameters.
     ///
     /// # Errors
     /// [`ConstraintError::Singular`] if the constraints are dependent there;

@@ -1,4 +1,4 @@
-//! Loops of a tree, closed after its joints are eliminated.
+//! Loops of a tree, which are closed after its joints have been eliminated.
 
 use pc_expr::{Graph, Inputs, Transcription};
 
@@ -11,7 +11,7 @@ use crate::tree::equations::TreeEquations;
 use crate::tree::system::TreeSystem;
 
 impl<'g> Multipliers<'g> {
-    /// The same equations derived in an empty graph, for a [system](crate::System) that is a tree.
+    /// The same equations, derived again in an empty graph, for a [system](crate::System) that is a tree.
     ///
     /// # Errors
     /// As for [`with_multipliers`](crate::System::with_multipliers), which made the original equations.
@@ -37,8 +37,8 @@ impl<'g> Multipliers<'g> {
         })
     }
 
-    /// The solution for accelerations and the reactions of the first constraints, `rank` of them, joint after
-    /// joint; `None` for a system that is not a tree.
+    /// The solver, joint by joint, for accelerations and for the reactions of the first `rank` constraints;
+    /// `None` for a system that is not a tree.
     ///
     /// # Errors
     /// As for [`compile_for`](Multipliers::compile_for).

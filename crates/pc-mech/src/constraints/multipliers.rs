@@ -18,15 +18,15 @@ use crate::system::system::System;
 ///
 ///   M η̇ = r + Cᵀ λ,   C η̇ = −(dC/dt) η − dc_0/dt,   ẋ = b η + b_0,
 ///
-/// of a system whose quasi-velocities are bound by C η + c_0 = 0: conditions on velocities, or the
-/// derivatives C_αs = X_s f_α, c_α0 = X_0 f_α of conditions on positions. M and r are those of (9); λ_α is
-/// the reaction conjugate to the condition, with the power −λ_α c_α0. For
-/// [nonlinear](Constraint::nonlinear) conditions g(t, x, η) = 0, C is ∂g/∂η and C η̇ = −(∂g/∂x) ẋ − ∂g/∂t.
+/// of a system whose quasi-velocities are bound by C η + c_0 = 0: conditions on velocities, or the derivatives
+/// C_αs = X_s f_α, c_α0 = X_0 f_α of conditions on positions. M and r are those of (9); λ_α is the reaction
+/// conjugate to the condition, and has the power −λ_α c_α0. For [nonlinear](Constraint::nonlinear) conditions
+/// g(t, x, η) = 0, C is ∂g/∂η and C η̇ = −(∂g/∂x) ẋ − ∂g/∂t.
 ///
 /// All k quasi-velocities are components of the state. At each evaluation those that determine the others best are
 /// taken as independent, so the only singular positions are those where the constraints themselves are singular; the
-/// rates do not depend on the choice. Its [projection](pc_expr::VectorField::project) corrects numerical drift from
-/// the constraints.
+/// rates do not depend on the choice. The [projection](pc_expr::VectorField::project) of the compiled motion
+/// corrects numerical drift from the constraints.
 ///
 /// ```
 /// use pc_mech::{Constraint, Graph, System, VectorField};
@@ -49,13 +49,13 @@ use crate::system::system::System;
 pub struct Multipliers<'g> {
     pub(crate) equations: Equations<'g>,
     pub(super) constraints: Vec<Constraint<'g>>,
-    /// g, which is C η + c_0 where it is affine.
+    /// The functions g, equal to C η + c_0 where they are affine.
     pub(super) velocities: Vec<Expr<'g>>,
     /// C = ∂g/∂η, m × k.
     pub(crate) coefficients: Matrix<Expr<'g>>,
-    /// −(dC/dt) η − dc_0/dt, length m.
+    /// The m right-hand sides −(dC/dt) η − dc_0/dt.
     pub(crate) right: Vec<Expr<'g>>,
-    /// The symbols λ, length m.
+    /// The m symbols λ.
     pub(crate) reactions: Vec<Expr<'g>>,
     /// Constraints that follow from these, which are checked but not imposed.
     pub(super) followers: Vec<Constraint<'g>>,
@@ -63,7 +63,7 @@ pub struct Multipliers<'g> {
     pub(super) rank: usize,
     /// The indices of the quasi-velocities that depend on the others, wherever these determine them.
     pub(crate) dependent: Option<Vec<usize>>,
-    /// Whether the reactions are observed.
+    /// Whether the reactions are among the observables.
     pub(super) observed: bool,
 }
 
@@ -71,11 +71,12 @@ impl<'g> System<'g> {
     /// The equations of motion under constraints, with multipliers.
     ///
     /// # Errors
-    /// [`ConstraintError::NotAffine`] unless it was declared [nonlinear](Constraint::nonlinear);
-    /// [`ConstraintError::TooMany`] if no velocity is left free; [`FrameError::OfState`](crate::FrameError::OfState)
-    /// for one on first-order states; [`ConstraintError::Dependent`] for one that follows from those before it, or
-    /// contradicts them; [`LagrangianError::Degenerate`](crate::LagrangianError::Degenerate) if the constraints leave
-    /// velocities without inertia; [`ConstraintError::Jumps`] for one that changes at a place that the motion passes.
+    /// [`ConstraintError::NotAffine`] for a constraint on velocities that is neither affine nor declared
+    /// [nonlinear](Constraint::nonlinear); [`ConstraintError::TooMany`] if no velocity is left free;
+    /// [`FrameError::OfState`](crate::FrameError::OfState) for a condition on first-order states;
+    /// [`ConstraintError::Dependent`] for one that follows from those before it, or contradicts them;
+    /// [`LagrangianError::Degenerate`](crate::LagrangianError::Degenerate) if the constraints leave velocities
+    /// without inertia; [`ConstraintError::Jumps`] for one that jumps at a surface that the motion crosses.
     pub fn with_multipliers(&self, constraints: &[Constraint<'g>]) -> Result<Multipliers<'g>, MechError> {
         let graph = self.graph();
         let (k, m) = (self.quasi_velocities.len(), constraints.len());
@@ -132,33 +133,33 @@ impl<'g> System<'g> {
 }
 
 impl<'g> Multipliers<'g> {
-    /// M, r and the energy of the unconstrained system.
+    /// The equations of the unconstrained system: M, r and the energy.
     pub fn equations(&self) -> &Equations<'g> {
         &self.equations
     }
 
-    /// The constraints, m of them.
+    /// The m constraints.
     pub fn constraints(&self) -> &[Constraint<'g>] {
         &self.constraints
     }
 
-    /// C η + c_0 of each constraint, or g where it is nonlinear, length m.
+    /// The m expressions C η + c_0 of the constraints, or g where a constraint is nonlinear.
     pub fn velocities(&self) -> &[Expr<'g>] {
         &self.velocities
     }
 
-    /// C, m × k, of (t, x), and of η where a constraint is nonlinear.
+    /// The m × k matrix C as a function of (t, x), and also of η where a constraint is nonlinear.
     pub fn coefficients(&self) -> &Matrix<Expr<'g>> {
         &self.coefficients
     }
 
-    /// The symbols λ_α of the reactions, length m, `λ_` before the name of the constraint; outputs of the system may
-    /// contain them.
+    /// The m symbols λ_α of the reactions, named `λ_` followed by the name of the constraint; outputs of the system
+    /// may contain them.
     pub fn reactions(&self) -> &[Expr<'g>] {
         &self.reactions
     }
 
-    /// Whether a constraint is one on positions.
+    /// Whether the constraint with this index is a condition on positions.
     pub fn is_holonomic(&self, constraint: usize) -> bool {
         self.constraints.get(constraint).is_some_and(|c| c.is_holonomic(&self.equations.system))
     }
@@ -182,17 +183,18 @@ impl<'g> Multipliers<'g> {
         lagrange.with_multipliers(&self.constraints.iter().map(put).collect::<Vec<_>>())
     }
 
-    /// The equations with further constraints that follow from the present ones. Those that follow only
-    /// where the present ones hold replace them where these are nearly dependent, as the bars of an
-    /// overconstrained mechanism take turns in carrying the load; the single reactions are then
-    /// undetermined, and NaN. A [projection](pc_expr::VectorField::project) of the compiled motion to a
-    /// state where one of them does not vanish is refused, as [`ConstraintError::Departed`].
+    /// The equations with further constraints that are implied by the present ones. Where the present
+    /// constraints are nearly dependent, they are replaced by those among the further ones that follow only
+    /// where the present ones hold, as the bars of an overconstrained mechanism take turns in carrying the
+    /// load. The individual reactions are then undetermined, and NaN. A
+    /// [projection](pc_expr::VectorField::project) of the compiled motion to a state where one of the further
+    /// constraints does not vanish is refused, as [`ConstraintError::Departed`].
     #[must_use]
     pub fn followed_by(self, followers: &[Constraint<'g>]) -> Multipliers<'g> {
         Multipliers { followers: followers.to_vec(), ..self }
     }
 
-    /// The forces C_αs λ_α on the quasi-velocities, with the symbols λ, length k.
+    /// The k forces C_αs λ_α on the quasi-velocities, with the symbols λ.
     pub fn reaction_forces(&self) -> Vec<Expr<'g>> {
         let graph = self.equations.system.graph();
         let on = |s: usize| graph.dot(self.coefficients.column(s), self.reactions.iter().copied());
@@ -205,7 +207,7 @@ impl<'g> Multipliers<'g> {
         Multipliers { observed: true, ..self }
     }
 
-    /// Compiles as [`compile_for`](Multipliers::compile_for) does with the usual options.
+    /// Compiles as [`compile_for`](Multipliers::compile_for) does with the default options.
     ///
     /// # Errors
     /// As there.
@@ -237,8 +239,8 @@ impl<'g> Multipliers<'g> {
         Ok(motion.on_surface(names, whole.surface(&first_order)?))
     }
 
-    /// The same equations with spare constraints after the others: followers that are independent of them
-    /// away from the constraints.
+    /// The same equations with spare constraints after the others: implied constraints that are independent of
+    /// them away from the states that satisfy the constraints.
     fn with_spare(&self) -> Multipliers<'g> {
         let (system, mut whole) = (&self.equations.system, self.clone());
         let graph = system.graph();
@@ -264,13 +266,14 @@ impl<'g> Multipliers<'g> {
         whole
     }
 
-    /// The conversion between (x, η) and (x, y) with the momenta of all quasi-velocities, where the
+    /// The conversion between (x, η) and (x, y) with the momenta of all quasi-velocities, at states where the
     /// constraints hold:
     ///
     ///   ∂L/∂η − Cᵀ μ = y,   C η + c_0 = 0
     ///
-    /// is solved for η and μ, which is regular also where L determines no η without the constraints; μ = 0 for momenta
-    /// that satisfy the constraints. `guess` is as for [`compile_in_momenta`](Multipliers::compile_in_momenta).
+    /// is solved for η and μ, which is regular even where L alone, without the constraints, does not determine η; μ =
+    /// 0 for momenta that satisfy the constraints. `guess` is as for
+    /// [`compile_in_momenta`](Multipliers::compile_in_momenta).
     ///
     /// # Errors
     /// As there.
@@ -283,8 +286,8 @@ impl<'g> Multipliers<'g> {
         LegendreTransform::solving(system, &momenta, &equations, Some(&nearby))
     }
 
-    /// M η = y − p_0 for a quadratic L, p(η) = y for any other: the equations with multipliers for momenta
-    /// that satisfy the constraints.
+    /// The equations M η = y − p_0 for a quadratic L, p(η) = y for any other. They are the equations with
+    /// multipliers for momenta that satisfy the constraints.
     fn free_legendre_equations(&self, momenta: &[Expr<'g>], guess: &[f64]) -> FirstOrder<'g> {
         let (system, graph, eta) = (&self.equations.system, self.graph(), self.quasi_velocities());
         let (mass, right, implicit) = match quadratic(graph, system.lagrangian, eta) {
@@ -313,7 +316,7 @@ impl<'g> Multipliers<'g> {
         }
     }
 
-    /// The equations with w = (η, μ), without rates.
+    /// The equations for w = (η, μ), without rates.
     fn legendre_equations(&self, momenta: &[Expr<'g>], guess: &[f64]) -> Result<FirstOrder<'g>, MechError> {
         let (system, graph, eta) = (&self.equations.system, self.graph(), self.quasi_velocities());
         let (k, m) = (eta.len(), self.reactions.len());
@@ -349,14 +352,14 @@ impl<'g> Multipliers<'g> {
         })
     }
 
-    /// The indices of the quasi-velocities that are taken as dependent wherever the others determine them; none if no
-    /// choice was made.
+    /// The indices of the quasi-velocities that are taken as dependent wherever the others determine them; empty if
+    /// no choice was made.
     pub fn dependent(&self) -> &[usize] {
         self.dependent.as_deref().unwrap_or_default()
     }
 
-    /// The equations with the quasi-velocities of these m indices as the dependent ones wherever the others
-    /// determine them.
+    /// The equations in which the quasi-velocities with these m indices are the dependent ones, wherever the
+    /// others determine them.
     #[must_use]
     pub fn depending(&self, dependent: Vec<usize>) -> Multipliers<'g> {
         Multipliers { dependent: Some(dependent), ..self.clone() }
@@ -370,7 +373,7 @@ impl<'g> Multipliers<'g> {
         &self.equations.system.quasi_velocities
     }
 
-    /// f(t, x) of the constraints on positions, then g(t, x, η) of all.
+    /// The functions f(t, x) of the constraints on positions, then g(t, x, η) of all constraints.
     pub(crate) fn conditions(&self) -> Vec<Expr<'g>> {
         let positions = (0..self.constraints.len()).filter(|&a| self.is_holonomic(a));
         positions.map(|a| self.constraints[a].expression).chain(self.velocities.iter().copied()).collect()
@@ -406,7 +409,7 @@ impl<'g> Multipliers<'g> {
         Ok(Surface::new(&first_order.inputs(&[]), conditions, graph)?)
     }
 
-    /// The matrix of M η̇ − Cᵀ λ = r, −C η̇ = (dC/dt) η + dc_0/dt.
+    /// The matrix of the equations M η̇ − Cᵀ λ = r, −C η̇ = (dC/dt) η + dc_0/dt.
     fn bordered(&self) -> Matrix<Expr<'g>> {
         let (mass, c) = (self.equations.mass_matrix(), &self.coefficients);
         let (k, size) = (mass.rows(), mass.rows() + c.rows());

@@ -1,4 +1,4 @@
-//! The header and the source file of C.
+//! Writes the header and the source file for C.
 
 use std::fmt::Write;
 
@@ -9,16 +9,17 @@ pub(super) fn files(source: &Source<'_>) -> Vec<EmittedFile> {
     vec![file("h", header(source)), file("c", body(source))]
 }
 
-/// The endings of the names of macros.
+/// The suffixes of the names of macros.
 const MACROS: &[&str] =
     &["N", "K", "STATES", "DIM", "PARAMETERS", "INTEGRALS", "OUTPUTS", "T_START", "T_END", "H", "MAIN"];
 
-/// The macros of the header for a `name`; locals have other names.
+/// The macros that the header for `name` defines; local variables must not have these
+/// names.
 pub(super) fn macros(name: &str) -> Vec<String> {
     MACROS.iter().map(|end| format!("{}_{end}", name.to_uppercase())).collect()
 }
 
-/// The name in capitals, for macros.
+/// The name of the source in capitals, for use in macros.
 fn capitals(source: &Source<'_>) -> String {
     source.name.to_uppercase()
 }
@@ -45,7 +46,8 @@ fn extent(source: &Source<'_>, extent: Extent) -> String {
     }
 }
 
-/// The arrays of the source: declarators, contents in words, and entries.
+/// The arrays of the source: for each, its declarator, its contents in words, and its
+/// entries.
 fn arrays(source: &Source<'_>) -> Vec<(String, &'static str, String)> {
     let (name, capitals) = (&source.name, capitals(source));
     let string = format!("const char *const {name}");
@@ -188,7 +190,7 @@ fn body(source: &Source<'_>) -> String {
     text
 }
 
-/// The Runge–Kutta method with fixed steps.
+/// The `main` function: the Runge–Kutta method with fixed steps.
 fn main(source: &Source<'_>) -> String {
     let parameters = if source.parameters.is_empty() { "NULL" } else { "@_default_parameters" };
     let text = "

@@ -10,22 +10,24 @@ use crate::emit::{c, rust};
 use crate::equations::poincare::Equations;
 use crate::error::{MechError, ShapeError};
 
-/// The product of the operations of a right-hand side and the length of the state beyond which the Jacobian
-/// has some ten thousand operations: too long to read, and minutes of work for compilers.
+/// The product of the operations of a right-hand side and the length of the state beyond which the Jacobian has
+/// some ten thousand operations: too many to read, and minutes of work for compilers.
 const LONG_JACOBIAN: usize = 30_000;
 
-/// Longer equations are left out of the comment at the head of a file.
+/// Equations longer than this are left out of the comment at the head of a file.
 const LONG_EQUATION: usize = 160;
 
 impl<'g> Equations<'g> {
     /// The equations as source code: ẏ of y = (x, η), its Jacobian, the mass matrix, the energy, the integrals and the
     /// outputs, each one straight-line function of (t, y, p) with the parameters p as run-time arguments. If the
-    /// right-hand side is so long that its Jacobian would have some ten thousand operations, it, the mass matrix and
-    /// the energy are computed from a table of operations instead, and the Jacobian by the chain rule.
+    /// right-hand side is so long that its Jacobian would have some ten thousand operations, then the right-hand side,
+    /// the mass matrix and the energy are computed from a table of operations instead, and the Jacobian by the chain
+    /// rule.
     ///
-    /// C comes as a header and a source file, Rust as one file. Both explain their use at their head. The same system
-    /// in a new graph gives the same text. Its operations are those of a [`Program`] of the same expressions, so that
-    /// the values are those of the interpreter to the last bit where the mathematical library is the same.
+    /// C source consists of a header and a source file, Rust source of one file. Both explain their use at their
+    /// head. The same system, built in a new graph, gives the same text. The operations are those of a [`Program`] of
+    /// the same expressions, so that the values are those of the interpreter to the last bit where the mathematical
+    /// library is the same.
     ///
     /// ```
     /// use pc_mech::{EmitOptions, Graph, Language, System};
@@ -45,14 +47,14 @@ impl<'g> Equations<'g> {
     /// ```
     ///
     /// # Errors
-    /// [`ShapeError`] if the start state has the wrong length,
+    /// [`ShapeError`] if the initial state has the wrong length,
     /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) for a symbol that is neither state nor declared
     /// parameter.
     pub fn emit(&self, options: &EmitOptions) -> Result<Vec<EmittedFile>, MechError> {
         self.emit_with(options, &[])
     }
 
-    /// As [`emit`](Equations::emit), with further functions.
+    /// The equations as source code, as [`emit`](Equations::emit) writes them, with further functions.
     ///
     /// # Errors
     /// As for [`emit`](Equations::emit).
@@ -69,8 +71,8 @@ impl<'g> Equations<'g> {
     }
 
     /// Whether derivatives of the right-hand side are too long to be written out, in which case
-    /// [`emit`](Equations::emit) does not: those of a [directional](SourceFunction::directional) function
-    /// would also take compilers minutes.
+    /// [`emit`](Equations::emit) does not write them out. The derivatives in a
+    /// [directional](SourceFunction::directional) function would then also take compilers minutes.
     ///
     /// # Errors
     /// As for [`emit`](Equations::emit).
@@ -135,8 +137,8 @@ impl<'g> Equations<'g> {
         if short { lines } else { Vec::new() }
     }
 
-    /// The table for a right-hand side whose Jacobian would be too long as statements: its operations, with
-    /// those of the mass matrix and of the energy.
+    /// The table for a right-hand side whose Jacobian would be too long if written as statements: its
+    /// operations, with those of the mass matrix and of the energy.
     fn shared(
         &self,
         writer: &Writer<'_, 'g>,
@@ -296,7 +298,7 @@ impl<'g> Equations<'g> {
     }
 }
 
-/// Whether the Jacobian of the right-hand side is too long to read.
+/// Whether the Jacobian of the right-hand side would be too long to read.
 fn is_long<'g>(system: &FirstOrder<'g>, solved: &Solved<'g>) -> Result<bool, MechError> {
     let inputs = system.inputs(&[]);
     let operations = Program::new(system.graph, &inputs, &solved.motion)?.code().len();
@@ -328,7 +330,7 @@ struct Writer<'a, 'g> {
     options: &'a EmitOptions,
     inputs: Vec<String>,
     prefix: String,
-    /// Names that locals cannot have.
+    /// Names that local variables must not have.
     reserved: Vec<String>,
 }
 
@@ -347,8 +349,8 @@ impl<'a, 'g> Writer<'a, 'g> {
         Writer { system, options, inputs, prefix: name + "_", reserved }
     }
 
-    /// A function of the given name, purpose and array; `slot` gives the index of each output in the array
-    /// and its meaning.
+    /// A function with the given name and purpose that writes the given array; `slot` gives the index of each
+    /// output in the array and its meaning.
     fn routine(
         &self,
         name: &str,
@@ -360,7 +362,7 @@ impl<'a, 'g> Writer<'a, 'g> {
         self.routine_along(&[], name, purpose, (array, extent), values, slot)
     }
 
-    /// As [`routine`](Self::routine), with these symbols of a direction after the parameters.
+    /// As [`routine`](Self::routine), but with these symbols for a direction after the parameters.
     fn routine_along(
         &self,
         direction: &[Expr<'g>],

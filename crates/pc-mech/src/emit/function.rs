@@ -2,7 +2,7 @@
 
 use pc_expr::Expr;
 
-/// A function of (t, y, p) for [emitted source](crate::Equations::emit_with), that writes an array of values.
+/// A function of (t, y, p) for [emitted source](crate::Equations::emit_with) that writes an array of values.
 #[derive(Clone, Debug)]
 pub struct SourceFunction<'g> {
     pub(super) name: String,
@@ -12,9 +12,10 @@ pub struct SourceFunction<'g> {
 }
 
 impl<'g> SourceFunction<'g> {
-    /// A function of this name, an identifier, that writes these values, each with a word for its meaning.
-    /// They may contain the [symbols of the accelerations](crate::System::accelerations). The purpose ends
-    /// the sentence “Writes …”.
+    /// A function with this name, which must be an identifier, that writes these values, each given with a
+    /// word for its meaning. They may contain the [symbols of the
+    /// accelerations](crate::System::accelerations). The purpose is used as the end of a sentence that begins
+    /// with “Writes”.
     pub fn new(
         name: impl Into<String>,
         purpose: impl Into<String>,

@@ -1,10 +1,10 @@
-//! The source file of Rust.
+//! Writes the source file for Rust.
 
 use std::fmt::Write;
 
 use crate::emit::source::{EmittedFile, Extent, Routine, Source};
 
-/// Constants of the file: a local must not have the name of a constant.
+/// The names of the constants in the file, which local variables must not have.
 pub(super) const CONSTANTS: &[&str] = &[
     "COORDINATES",
     "QUASI_VELOCITIES",
@@ -46,7 +46,8 @@ pub(super) fn files(source: &Source<'_>) -> Vec<EmittedFile> {
     vec![EmittedFile { name, text }]
 }
 
-/// Indented lines between fences: rustdoc takes unfenced ones for Rust and tests them.
+/// Encloses indented lines between fences: rustdoc would otherwise take them for Rust and
+/// test them.
 fn fenced(lines: &[String]) -> Vec<String> {
     let mut fenced = Vec::new();
     for run in lines.chunk_by(|a, b| a.starts_with("    ") == b.starts_with("    ")) {

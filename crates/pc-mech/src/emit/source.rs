@@ -2,10 +2,10 @@
 
 use pc_expr::{Calls, Chain, FunctionBody, Language};
 
-/// The greatest width of a line of a list.
+/// The maximum width of a line in a list.
 const WIDTH: usize = 106;
 
-/// Options of emitted source.
+/// Options for emitted source.
 #[derive(Clone, Debug)]
 pub struct EmitOptions {
     pub(super) language: Language,
@@ -17,7 +17,7 @@ pub struct EmitOptions {
     pub(super) jacobian: bool,
 }
 
-/// A motion to try out.
+/// The initial state and the times of a sample motion.
 #[derive(Clone, Debug)]
 pub(super) struct Start {
     pub(super) t: f64,
@@ -40,37 +40,38 @@ impl EmitOptions {
         }
     }
 
-    /// The title of the system, for the first line; without it the name.
+    /// Sets the title of the system, which appears on the first line; the default is the name.
     #[must_use]
     pub fn title(mut self, title: impl Into<String>) -> EmitOptions {
         self.title = title.into();
         self
     }
 
-    /// A remark for the reader, as lines of the comment at the head.
+    /// Adds a remark for the reader to the comment at the head.
     #[must_use]
     pub fn remark(mut self, remark: impl Into<String>) -> EmitOptions {
         self.remark = remark.into();
         self
     }
 
-    /// A start state (coordinates, quasi-velocities, then first-order states) and the times of a motion. With these
-    /// the source has a `main` that integrates it.
+    /// Sets an initial state (coordinates, quasi-velocities, then first-order states) and the times of a motion.
+    /// With these the source has a `main` that integrates it.
     #[must_use]
     pub fn start(mut self, t_start: f64, state: &[f64], t_end: f64) -> EmitOptions {
         self.start = Some(Start { t: t_start, state: state.to_vec(), t_end });
         self
     }
 
-    /// Whether to write the Jacobian of the right-hand side, as by default.
+    /// Whether to write the Jacobian of the right-hand side, which is the default.
     #[must_use]
     pub fn jacobian(mut self, jacobian: bool) -> EmitOptions {
         self.jacobian = jacobian;
         self
     }
 
-    /// Whether to write a·b + c as one operation that rounds once. This is fast only where the processor has it and
-    /// the compiler may use it, and the results differ by rounding from those of the library.
+    /// Whether to write a·b + c as a single operation, with a single rounding. This is fast only where the
+    /// processor has such an operation and the compiler may use it, and the results differ from those of the
+    /// library by rounding errors.
     #[must_use]
     pub fn fused(mut self, fused: bool) -> EmitOptions {
         self.fused = fused;
@@ -104,7 +105,7 @@ pub(super) enum Extent {
     Count(usize),
 }
 
-/// A function of the source.
+/// A function in the source.
 pub(super) struct Routine {
     pub(super) name: String,
     pub(super) purpose: String,
@@ -113,12 +114,12 @@ pub(super) struct Routine {
     pub(super) extent: Extent,
     /// Whether a direction follows the parameters.
     pub(super) directional: bool,
-    /// Whether zeros have to be written first.
+    /// Whether the array has to be filled with zeros first.
     pub(super) sparse: bool,
     pub(super) body: FunctionBody,
 }
 
-/// All parts of the files of a language.
+/// All parts of the files in a language.
 pub(super) struct Source<'a> {
     pub(super) options: &'a EmitOptions,
     /// The name as an identifier.
@@ -133,7 +134,7 @@ pub(super) struct Source<'a> {
     /// The equations as text, unless they are long.
     pub(super) equations: Vec<String>,
     pub(super) routines: Vec<Routine>,
-    /// A table of operations that they share, for a long right-hand side.
+    /// A table of operations that the functions share, for a long right-hand side.
     pub(super) shared: Option<Chain>,
 }
 

@@ -1,4 +1,4 @@
-//! The equations as a book prints them: sums of products of quasi-velocities with collected coefficients.
+//! The equations as a book would print them: sums of products of quasi-velocities with collected coefficients.
 
 use pc_expr::{Expr, Folding, Graph, Polynomial, Style};
 
@@ -6,10 +6,10 @@ use crate::equations::poincare::Equations;
 use crate::system::system::System;
 
 impl<'g> Equations<'g> {
-    /// The left and right sides of M η̇ = r, k pairs of texts.
+    /// The left-hand and right-hand sides of M η̇ = r, as k pairs of texts.
     ///
-    /// A right side that is a polynomial in the quasi-velocities is written as a sum of their products; the compiled
-    /// equations nest them where that saves operations.
+    /// A right-hand side that is a polynomial in the quasi-velocities is written as a sum of their products; the
+    /// compiled equations nest these products where that saves operations.
     pub fn balance(&self, style: Style) -> Vec<(String, String)> {
         let graph = self.system.graph();
         let rates = self.system.accelerations();
@@ -23,14 +23,14 @@ impl<'g> Equations<'g> {
             .collect()
     }
 
-    /// The right sides of the [balance](Equations::balance) as they are written, in the graph of a page; none for
-    /// those that are not polynomials, which are written [unchanged](Equations::right_hand_side).
+    /// The right-hand sides of the [balance](Equations::balance) as they are written, in the graph `page`; none
+    /// for those that are not polynomials, which are written [unchanged](Equations::right_hand_side).
     pub fn written<'p>(&self, page: &'p Graph) -> Vec<Option<Expr<'p>>> {
         sums_of_products(&self.system, self.right_hand_side(), &self.system.quasi_velocities, page)
     }
 }
 
-/// An expression as a sum of products of `variables`, if it is a polynomial in them.
+/// An expression expanded into a sum of products of `variables`, if it is a polynomial in them.
 pub(crate) fn expanded<'g>(
     system: &System<'g>,
     expression: Expr<'g>,
@@ -43,8 +43,8 @@ pub(crate) fn expanded<'g>(
     written.map_or_else(|| expression.display(style), |written| written.display(style))
 }
 
-/// Several such expressions in the graph of a page, symbols in book order; `None` for those that are not
-/// polynomials.
+/// Several expressions, each expanded in this way, in the graph `page` with symbols in book order; `None` for
+/// those that are not polynomials.
 pub(crate) fn sums_of_products<'g, 'p>(
     system: &System<'g>,
     expressions: &[Expr<'g>],

@@ -15,15 +15,15 @@ use crate::equations::legendre::{Inverse, Legendre};
 use crate::error::{LagrangianError, MechError, shape};
 use crate::system::system::System;
 
-/// The largest block of the mass matrix that is inverted by cofactors, in rows.
+/// The number of rows of the largest block of the mass matrix that is inverted by cofactors.
 const MOST_COFACTORS: usize = 3;
 
 /// The canonical equations in coordinates and momenta y_s = ∂L/∂η_s, with H(t, x, y) = y_s η_s − L:
 ///
 ///   ẏ_s = (c_rs^m ∂H/∂y_r + c_0s^m) y_m − X_s H + Q_s   (10),   ẋ_i = b_i0 + b_is ∂H/∂y_s   (11).
 ///
-/// X_s H being taken at fixed y. With η = ẋ these are Hamilton's equations, in redundant coordinates (17), in
-/// quasi-coordinates (19).
+/// X_s H being taken at fixed y. With η = ẋ these are Hamilton's equations, or, in redundant coordinates, (17)
+/// and, in quasi-coordinates, (19).
 #[derive(Clone, Debug)]
 pub struct Canonical<'g> {
     system: System<'g>,
@@ -38,7 +38,8 @@ pub struct Canonical<'g> {
 }
 
 impl<'g> System<'g> {
-    /// The symbols of the k momenta y_s: `p_` before the name of the quasi-velocity, `p_x` for the velocity `x'`.
+    /// The symbols of the k momenta y_s, named `p_` followed by the name of the quasi-velocity; `p_x` for the
+    /// velocity `x'`.
     pub fn momentum_symbols(&self) -> Vec<Expr<'g>> {
         let name = |eta: &Expr<'g>| format!("p_{}", eta.to_string().trim_end_matches('\''));
         self.quasi_velocities.iter().map(|eta| self.unused(name(eta), "p_")).collect()
@@ -111,8 +112,8 @@ impl<'g> System<'g> {
     }
 }
 
-/// η of M η = y − p_0, for each small block of M by cofactors over the determinant: expanded they are as in a
-/// book, and regular where M is.
+/// The solution η of M η = y − p_0, for each small block of M by cofactors over the determinant: expanded, the
+/// expressions are as in a book, and regular where M is.
 fn solution<'g>(
     graph: &'g Graph,
     mass: &Matrix<Expr<'g>>,
@@ -183,12 +184,12 @@ fn impulse<'g>(momenta: &[Expr<'g>], at_rest: &[Expr<'g>]) -> Vec<Expr<'g>> {
 }
 
 impl<'g> Canonical<'g> {
-    /// The system they were derived from.
+    /// The system from which they were derived.
     pub fn system(&self) -> &System<'g> {
         &self.system
     }
 
-    /// Whether y = ∂L/∂η is solved for η in an expression, as it is where L is quadratic in η.
+    /// Whether the solution η of y = ∂L/∂η is an expression, as it is where L is quadratic in η.
     ///
     /// Otherwise the expressions of these equations contain the symbols η besides (t, x, y), and hold where y = ∂L/∂η;
     /// [compiled](Canonical::compile_for), they solve that by Newton's method.
@@ -207,11 +208,11 @@ impl<'g> Canonical<'g> {
         }
     }
 
-    /// The same equations with a guess η, length k, from which Newton's method solves y = ∂L/∂η. The default is η = 0;
-    /// closed equations need none.
+    /// The same equations with a guess η, of length k, from which Newton's method starts to solve y = ∂L/∂η. The
+    /// default is η = 0; closed equations need none.
     ///
-    /// It should be in the domain of L, not near its boundary, with M = ∂²L/∂η∂η regular. Where L is not convex in η,
-    /// several η may have the same momenta, and the guess decides which of them is found.
+    /// The guess should be in the domain of L, away from its boundary, and M = ∂²L/∂η∂η should be regular there.
+    /// Where L is not convex in η, several η may have the same momenta, and the guess decides which of them is found.
     ///
     /// # Errors
     /// [`ShapeError`](crate::ShapeError)
@@ -228,18 +229,18 @@ impl<'g> Canonical<'g> {
         &self.momenta
     }
 
-    /// y_s = ∂L/∂η_s in terms of (t, x, η), length k.
+    /// The k momenta y_s = ∂L/∂η_s in terms of (t, x, η).
     pub fn momenta_of_velocities(&self) -> &[Expr<'g>] {
         &self.legendre.momenta
     }
 
-    /// η_s = ∂H/∂y_s in terms of (t, x, y), length k; the symbols η_s where the equations are not
+    /// The k quasi-velocities η_s = ∂H/∂y_s in terms of (t, x, y); the symbols η_s where the equations are not
     /// [closed](Canonical::is_closed).
     pub fn quasi_velocities(&self) -> &[Expr<'g>] {
         &self.quasi_velocities
     }
 
-    /// η_s = ∂H/∂y_s in terms of (t, x, y), length k.
+    /// The k quasi-velocities η_s = ∂H/∂y_s in terms of (t, x, y).
     ///
     /// # Errors
     /// [`LagrangianError::NotQuadratic`] if the equations are not [closed](Canonical::is_closed).
@@ -247,19 +248,21 @@ impl<'g> Canonical<'g> {
         self.check_closed().map(|()| self.quasi_velocities.as_slice())
     }
 
-    /// H(t, x, y), or y_s η_s − L where the equations are not [closed](Canonical::is_closed): its derivatives
-    /// with respect to t, x and y at fixed η are those of H, since ∂/∂η_s (y_r η_r − L) = 0 at the solution.
+    /// The Hamiltonian H(t, x, y), or y_s η_s − L where the equations are not [closed](Canonical::is_closed):
+    /// the derivatives of that with respect to t, x and y at fixed η are those of H, since ∂/∂η_s (y_r η_r − L)
+    /// = 0 at the solution.
     pub fn hamiltonian(&self) -> Expr<'g> {
         self.hamiltonian
     }
 
-    /// ẋ_i (11) in terms of (t, x, y), or (t, x, η) where they are not [closed](Canonical::is_closed), length n.
+    /// The n velocities ẋ_i (11) in terms of (t, x, y), or of (t, x, η) where the equations are not
+    /// [closed](Canonical::is_closed).
     pub fn velocities(&self) -> &[Expr<'g>] {
         &self.velocities
     }
 
-    /// ẏ_s (10) in terms of (t, x, y), or (t, x, y, η) where they are not [closed](Canonical::is_closed),
-    /// length k.
+    /// The k rates ẏ_s (10) in terms of (t, x, y), or of (t, x, y, η) where the equations are not
+    /// [closed](Canonical::is_closed).
     pub fn right_hand_side(&self) -> &[Expr<'g>] {
         &self.right
     }
@@ -269,7 +272,7 @@ impl<'g> Canonical<'g> {
         &self.state_rates
     }
 
-    /// The two sides of the equations (10), k pairs of texts: sums of products of momenta.
+    /// The two sides of the equations (10), as k pairs of texts: sums of products of momenta.
     pub fn balance(&self, style: Style) -> Vec<(String, String)> {
         let graph = self.system.graph();
         let sides = self.momenta.iter().zip(&self.right);
@@ -281,8 +284,8 @@ impl<'g> Canonical<'g> {
             .collect()
     }
 
-    /// The right sides of the [balance](Canonical::balance) as they are written, in the graph of a page; none for
-    /// those that are not polynomials, which are written [unchanged](Canonical::right_hand_side).
+    /// The right-hand sides of the [balance](Canonical::balance) as they are written, in the graph `page`; none
+    /// for those that are not polynomials, which are written [unchanged](Canonical::right_hand_side).
     pub fn written<'p>(&self, page: &'p Graph) -> Vec<Option<Expr<'p>>> {
         sums_of_products(&self.system, &self.right, &self.momenta, page)
     }
@@ -290,12 +293,12 @@ impl<'g> Canonical<'g> {
     /// Compiles the equations as a vector field of the state (x, y); integrals, energy and outputs are observed as
     /// those of [`Equations`](crate::Equations) are.
     ///
-    /// Where they are not [closed](Canonical::is_closed), each evaluation solves y = ∂L/∂η for η to rounding, from the
-    /// same [guess](Canonical::with_guess), so that it depends on (t, x, y) only; if the guess does not converge, it
-    /// starts from the last solution. It fails, recoverably, with
-    /// [`EvaluationError::LegendreNotSolved`](crate::EvaluationError::LegendreNotSolved) where neither converges, and
-    /// with [`EvaluationError::SingularMassMatrix`](crate::EvaluationError::SingularMassMatrix) where a pivot of M =
-    /// ∂²L/∂η∂η vanishes.
+    /// Where they are not [closed](Canonical::is_closed), each evaluation solves y = ∂L/∂η for η to rounding accuracy,
+    /// from the same [guess](Canonical::with_guess), so that the result depends on (t, x, y) only; if the iteration
+    /// from the guess does not converge, it starts from the last solution. It fails, recoverably, with
+    /// [`EvaluationError::LegendreNotSolved`](crate::EvaluationError::LegendreNotSolved) where it converges from
+    /// neither, and with [`EvaluationError::SingularMassMatrix`](crate::EvaluationError::SingularMassMatrix) where a
+    /// pivot of M = ∂²L/∂η∂η vanishes.
     ///
     /// # Errors
     /// As for [`Equations::compile_for`](crate::Equations::compile_for).
@@ -328,7 +331,7 @@ impl<'g> Canonical<'g> {
     }
 
     /// The equations with w = η, M η = y − p_0 or ∂L/∂η = y: H is not needed, since X_s H = −X_s L at fixed y
-    /// and η. Nothing is observed.
+    /// and η. Observables are not included.
     pub(crate) fn first_order(&self) -> FirstOrder<'g> {
         let (system, graph) = (&self.system, self.system.graph());
         let (x, eta) = (system.frame.coordinates(), &system.quasi_velocities);
@@ -372,7 +375,7 @@ impl<'g> Canonical<'g> {
     /// Integrals, energy and outputs in terms of (t, x, y, η).
     fn observables(&self) -> Result<Vec<(String, Expr<'g>)>, MechError> {
         let (system, graph) = (&self.system, self.system.graph());
-        // An error of η changes y_s η_s − L in second order only.
+        // An error in η changes y_s η_s − L only to second order.
         let energy = if self.is_closed() { system.energy() } else { self.hamiltonian };
         let energy = ("energy".to_owned(), energy);
         let mut observables: Vec<_> =

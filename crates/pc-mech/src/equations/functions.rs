@@ -6,7 +6,8 @@ use crate::equations::poincare::Equations;
 use crate::error::MechError;
 
 impl<'g> Equations<'g> {
-    /// `values` as functions of t, (x, η), the parameters and, after these, the symbols in `more`, for occasional evaluation.
+    /// An evaluator of `values` as functions of t, (x, η), the parameters and, after these, the symbols in `more`, for
+    /// occasional evaluation.
     ///
     /// # Errors
     /// [`MechError`] for a value that contains another symbol.

@@ -1,4 +1,4 @@
-//! From quasi-velocities to momenta and back: y = ∂L/∂η.
+//! The conversion of quasi-velocities to momenta and back: y = ∂L/∂η.
 
 use pc_algebra::{Matrix, Quadratic, quadratic};
 use pc_expr::Expr;
@@ -9,7 +9,8 @@ use crate::system::system::System;
 /// The Legendre transform of L.
 #[derive(Clone, Debug)]
 pub(crate) struct Legendre<'g> {
-    /// M = ∂²L/∂η∂η, k × k, in (t, x) if L is quadratic, else in (t, x, η).
+    /// The k × k matrix M = ∂²L/∂η∂η, in terms of (t, x) if L is quadratic, else of (t,
+    /// x, η).
     pub(crate) mass: Matrix<Expr<'g>>,
     /// ∂L/∂η in (t, x, η), length k.
     pub(crate) momenta: Vec<Expr<'g>>,
@@ -26,7 +27,7 @@ pub(crate) enum Inverse<'g> {
         /// L_0
         lagrangian_at_rest: Expr<'g>,
     },
-    /// It is computed in numbers.
+    /// By numerical iteration.
     Implicit {
         /// A quasi-velocity in which L is not quadratic.
         quasi_velocity: Expr<'g>,
@@ -62,7 +63,7 @@ impl<'g> Legendre<'g> {
     }
 }
 
-/// A quasi-velocity that occurs in L other than in squares and products of two.
+/// A quasi-velocity in which L is not quadratic.
 pub(crate) fn not_quadratic_in<'g>(system: &System<'g>) -> Expr<'g> {
     let (graph, lagrangian, eta) = (system.graph(), system.lagrangian(), system.quasi_velocities());
     let alone = eta.iter().find(|&&eta| quadratic(graph, lagrangian, &[eta]).is_none());

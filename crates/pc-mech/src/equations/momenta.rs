@@ -15,12 +15,13 @@ impl<'g> Canonical<'g> {
         system.graph().substitute(&[f], &values)[0]
     }
 
-    /// The symbols of y with y_s = ∂L/∂η_s in terms of (t, x, η), k pairs.
+    /// The k symbols of y, each paired with y_s = ∂L/∂η_s in terms of (t, x, η).
     pub fn values_of_momenta(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
         self.momenta().iter().copied().zip(self.momenta_of_velocities().iter().copied()).collect()
     }
 
-    /// η̇ in terms of (t, x, η), length k, from ẏ = ∂p/∂t + ∂p/∂x ẋ + M η̇ with p = ∂L/∂η.
+    /// The k accelerations η̇ in terms of (t, x, η), from ẏ = ∂p/∂t + ∂p/∂x ẋ + M η̇ with
+    /// p = ∂L/∂η.
     pub fn accelerations(&self) -> Vec<Expr<'g>> {
         let (system, graph) = (self.system(), self.system().graph());
         let x = system.frame().coordinates().iter().copied().zip(self.velocities().iter().copied());

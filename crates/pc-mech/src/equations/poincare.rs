@@ -9,13 +9,13 @@ use crate::error::{LagrangianError, MechError, ShapeError};
 use crate::system::system::System;
 
 /// The equations of motion ẋ = b η + b_0 (3), M η̇ = r, which are (9) with n coordinates and k
-/// quasi-velocities, or (30) with l free ones in place of k.
+/// quasi-velocities, or (30) with l free quasi-velocities instead of k.
 #[derive(Clone, Debug)]
 pub struct Equations<'g> {
     pub(crate) system: System<'g>,
     velocities: Vec<Expr<'g>>,
     energy: Expr<'g>,
-    /// M and r; for a large tree they are derived on first use.
+    /// The matrices M and r; for a large tree they are derived on first use.
     matrices: OnceCell<Matrices<'g>>,
 }
 
@@ -27,7 +27,7 @@ struct Matrices<'g> {
 }
 
 impl<'g> Matrices<'g> {
-    /// If the derivation fails, the undefined matrices are reported on use.
+    /// Matrices of undefined entries, which are reported on use, for a derivation that failed.
     fn undefined(size: usize) -> Matrices<'g> {
         let undefined = Expr::ONE / Expr::ZERO;
         Matrices { mass: Matrix::from_fn(size, size, |_, _| undefined), right: vec![undefined; size] }
@@ -51,7 +51,7 @@ impl<'g> System<'g> {
     ///
     ///   d/dt ∂L/∂η_s = (c_rs^m η_r + c_0s^m) ∂L/∂η_m + X_s L + Q_s,   s, r = 1..`free`, m = 1..k.
     ///
-    /// The constraints are substituted after differentiation, so that all k momenta count. The
+    /// The constraints are substituted after differentiation, so that all k momenta contribute. The
     /// [system](Equations::system) of the result has only the free quasi-velocities. With `free` = k these
     /// are the equations (9).
     ///
@@ -75,7 +75,7 @@ impl<'g> System<'g> {
         })
     }
 
-    /// The same equations for any M, singular or not.
+    /// The equations (30) for any M, singular or not.
     pub(crate) fn equations(&self, free: usize) -> Result<Equations<'g>, MechError> {
         let graph = self.graph();
         let all = &self.quasi_velocities;
@@ -147,7 +147,7 @@ impl<'g> System<'g> {
 }
 
 impl<'g> Equations<'g> {
-    /// The system they were derived from.
+    /// The system from which the equations were derived.
     pub fn system(&self) -> &System<'g> {
         &self.system
     }
@@ -162,7 +162,7 @@ impl<'g> Equations<'g> {
         &self.matrices().mass
     }
 
-    /// The right-hand side r of M η̇ = r, length k.
+    /// The right-hand side r of M η̇ = r, of length k.
     pub fn right_hand_side(&self) -> &[Expr<'g>] {
         &self.matrices().right
     }
@@ -180,13 +180,13 @@ impl<'g> Equations<'g> {
         self.energy
     }
 
-    /// The same equations with symbols in integrals and outputs replaced, such as those of reactions.
+    /// The same equations with some symbols in integrals and outputs replaced, such as those of reactions.
     #[must_use]
     pub fn with_observed(&self, known: &[(Expr<'g>, Expr<'g>)]) -> Equations<'g> {
         Equations { system: self.system.with_observed(known), ..self.clone() }
     }
 
-    /// The same equations with the parameters replaced by their numbers.
+    /// The same equations with the parameters replaced by their values.
     #[must_use]
     pub fn with_parameters_bound(&self) -> Equations<'g> {
         let system = self.system.with_parameters_bound();

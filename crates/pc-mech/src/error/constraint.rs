@@ -6,7 +6,7 @@ use crate::error::lists::{at, listed, quoted};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConstraintError {
-    /// A condition on velocities that is not affine in them.
+    /// A condition on velocities that is not affine in the velocities.
     #[error("the constraint `{constraint}` is not affine in the quasi-velocities")]
     NotAffine {
         /// Its name.
@@ -22,13 +22,13 @@ pub enum ConstraintError {
         /// Number k of quasi-velocities.
         quasi_velocities: usize,
     },
-    /// A constraint that restricts no velocity, or none that those before it leave free.
+    /// A constraint that restricts no velocity, or none that the constraints before it leave free.
     #[error("the constraint `{constraint}` restricts no velocity that those before it leave free")]
     Dependent {
         /// Its name.
         constraint: String,
     },
-    /// The same at one state only.
+    /// A constraint that, at one state, restricts no velocity that the others leave free.
     #[error(
         "the constraint `{constraint}` restricts no velocity that the others leave free at t = {t}{}",
         listed(state)
@@ -41,7 +41,7 @@ pub enum ConstraintError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
-    /// A constraint that depends on the others at a place that the motion reaches, though not before.
+    /// A constraint that becomes dependent on the others at a state that the motion reaches.
     #[error(
         "near t = {t} the constraint `{constraint}` depends on the others and leaves `{quasi_velocity}` free: motions may \
          cross there, and this one cannot be followed across{}",
@@ -50,14 +50,14 @@ pub enum ConstraintError {
     RankLost {
         /// Its name.
         constraint: String,
-        /// The quasi-velocity that it determined last.
+        /// The quasi-velocity that it determined before.
         quasi_velocity: String,
         /// Time.
         t: f64,
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
-    /// A constraint that was dropped because it follows from the others, but does not do so
+    /// A constraint that was dropped because it followed from the others, but does not do so
     /// everywhere.
     #[error(
         "the constraint `{constraint}`, which followed from the others, no longer does at t = {t}{}",
@@ -76,10 +76,10 @@ pub enum ConstraintError {
     Jumps {
         /// Its name.
         constraint: String,
-        /// Names and values of a place.
+        /// Names and values of the variables at a jump.
         place: Vec<(String, f64)>,
     },
-    /// Quasi-velocities that were chosen as independent but do not determine the others.
+    /// Quasi-velocities chosen as independent that do not determine the others.
     #[error("{} cannot be the independent quasi-velocities: {why}", quoted(chosen))]
     NotIndependent {
         /// The chosen quasi-velocities.

@@ -1,4 +1,4 @@
-//! Why a motion has no rates, or no momenta, at a state.
+//! Errors for a motion that has no rates, or no momenta, at a state.
 
 use pc_expr::readable;
 
@@ -24,7 +24,7 @@ pub enum EvaluationError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
-    /// Newton's method found no quasi-velocities that have the momenta.
+    /// Newton's method found no quasi-velocities with the given momenta.
     #[error(
         "no solution η of y = ∂L/∂η was found: after {iterations} steps |y − ∂L/∂η| is {} at t = {t}{}",
         readable(*residual),
@@ -46,8 +46,8 @@ pub enum EvaluationError {
         /// The derivative.
         what: &'static str,
     },
-    /// Equations of variation of a motion of several pieces, whose deviations jump from one piece to the
-    /// next.
+    /// Equations of variation were requested for a piecewise motion, whose deviations jump from one
+    /// piece to the next.
     #[error(
         "deviations from this motion jump where it passes through {}: integrate them as sensitivities to the start, which jump there",
         .surfaces.join(" = 0 or ") + " = 0"
@@ -56,7 +56,7 @@ pub enum EvaluationError {
         /// The functions that vanish where the pieces meet.
         surfaces: Vec<String>,
     },
-    /// A motion whose equations are not a single program, so that no Taylor series is known.
+    /// A motion whose equations are not a single program, so that it has no Taylor series.
     #[error("Taylor's method needs equations that are solved in expressions: {because}")]
     NoSeries {
         /// Why they are not a single program.

@@ -1,4 +1,4 @@
-//! Errors of generalised forces, above all of those computed outside.
+//! Errors of generalised forces, above all of external ones.
 
 use crate::error::lists::{listed, quoted};
 
@@ -6,7 +6,7 @@ use crate::error::lists::{listed, quoted};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ForceError {
-    /// A force on something that is not a quasi-velocity.
+    /// A force on a name that is not a quasi-velocity.
     #[error("`{name}` is not a quasi-velocity; these are {}", known.join(", "))]
     NotAQuasiVelocity {
         /// The name.
@@ -14,13 +14,13 @@ pub enum ForceError {
         /// The quasi-velocities of the system.
         known: Vec<String>,
     },
-    /// An external force for a system that has declared none.
+    /// An external force for a system that declares none.
     #[error("no quasi-velocity of the system was declared to have an external force")]
     NoneDeclared,
-    /// An external force that is not a number.
+    /// An external force whose value is not finite.
     #[error("the external force on `{quasi_velocity}` is {value} at t = {t}{}", listed(state))]
     NotFinite {
-        /// The quasi-velocity it acts on.
+        /// The quasi-velocity on which it acts.
         quasi_velocity: String,
         /// The force.
         value: f64,
@@ -29,15 +29,15 @@ pub enum ForceError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
-    /// A derivative of an external force that is not a number.
+    /// A derivative of an external force whose value is not finite.
     #[error(
         "the derivative by `{by}` of the external force on `{quasi_velocity}` is {value} at t = {t}{}",
         listed(state)
     )]
     SlopeNotFinite {
-        /// The quasi-velocity it acts on.
+        /// The quasi-velocity on which the force acts.
         quasi_velocity: String,
-        /// The component of the state.
+        /// The component of the state with respect to which the derivative is taken.
         by: String,
         /// The derivative.
         value: f64,
@@ -49,7 +49,7 @@ pub enum ForceError {
     /// An external force that could not be computed.
     #[error("the external force on {} failed at t = {t}: {cause}", quoted(quasi_velocities))]
     Failed {
-        /// The quasi-velocities it acts on.
+        /// The quasi-velocities on which it acts.
         quasi_velocities: Vec<String>,
         /// Time.
         t: f64,

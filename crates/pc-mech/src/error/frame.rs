@@ -6,18 +6,18 @@ use crate::error::lists::{approximately, at};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FrameError {
-    /// b or b_0 of ẋ = b η + b_0 depends on a velocity.
+    /// A frame whose b or b_0, in ẋ = b η + b_0, depends on a velocity.
     #[error("the frame contains `{velocity}`, but b and b_0 must be functions of time and coordinates alone")]
     OfVelocities {
         /// The quasi-velocity, or velocity of a coordinate.
         velocity: String,
     },
-    /// b or b_0 jumps, and with it a quasi-velocity or a velocity.
+    /// A frame whose b or b_0 jumps, and with it a quasi-velocity or a velocity.
     #[error("the frame jumps by {} at {}: velocities or quasi-velocities jump there", approximately(*size), at(place))]
     Jumps {
         /// The size of the jump of an entry.
         size: f64,
-        /// Names and values of a place.
+        /// Names and values of the variables at a jump.
         place: Vec<(String, f64)>,
     },
     /// A part of the frame that depends on a first-order state.
@@ -28,15 +28,16 @@ pub enum FrameError {
         /// The state.
         state: String,
     },
-    /// Definitions that determine velocities before and after a place, but not there.
+    /// Definitions that determine the velocities before and after a state of the motion,
+    /// but not there.
     #[error(
         "between t = {from} and t = {to} the quasi-velocities cease to determine the velocities, or these the \
          quasi-velocities: the state does not say how the motion continues there"
     )]
     Undetermined {
-        /// Time at the start of the step that passes it.
+        /// Time at the start of the step that passes this state.
         from: f64,
-        /// Time at its end.
+        /// Time at the end of that step.
         to: f64,
     },
 }

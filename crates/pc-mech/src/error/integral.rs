@@ -1,4 +1,4 @@
-//! Errors of integrals that are to be kept.
+//! Errors of integrals that are to be kept constant.
 
 use crate::error::lists::{listed, quoted};
 
@@ -19,7 +19,7 @@ pub enum IntegralError {
     NotAnIntegral {
         /// The integral.
         name: String,
-        /// When it was seen to change.
+        /// The time at which it was found to change.
         t: f64,
         /// Its rate of change.
         rate: f64,

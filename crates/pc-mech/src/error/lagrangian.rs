@@ -19,7 +19,7 @@ pub enum LagrangianError {
         rank: usize,
         /// Number of quasi-velocities.
         size: usize,
-        /// The quasi-velocities for which elimination finds no pivot.
+        /// The quasi-velocities for which elimination found no pivot.
         quasi_velocities: Vec<String>,
     },
     /// H(t, x, y) was requested where y = ∂L/∂η is not linear in the quasi-velocities.
@@ -42,15 +42,15 @@ pub enum LagrangianError {
         /// Number k of quasi-velocities.
         quasi_velocities: usize,
     },
-    /// L jumps where the motion passes, so that its force there is an impulse.
+    /// L jumps on the path of the motion, so that its force there is an impulse.
     #[error("the Lagrangian jumps by {} at {}: its force there is an impulse", approximately(*size), at(place))]
     Jumps {
         /// The size of the jump.
         size: f64,
-        /// Names and values of a place.
+        /// Names and values of the variables at a jump.
         place: Vec<(String, f64)>,
     },
-    /// A momentum ∂L/∂η jumps, so that its rate is an impulse.
+    /// A momentum ∂L/∂η jumps, so that its rate of change is an impulse.
     #[error(
         "the momentum of `{quasi_velocity}`, the derivative of the Lagrangian, jumps by {} at {}: its rate there is an impulse",
         approximately(*size),
@@ -61,10 +61,10 @@ pub enum LagrangianError {
         quasi_velocity: String,
         /// The size of the jump.
         size: f64,
-        /// Names and values of a place.
+        /// Names and values of the variables at a jump.
         place: Vec<(String, f64)>,
     },
-    /// A frame or a kinetic energy that contains an input whose rate is not known.
+    /// The frame or the kinetic energy contains an input whose rate is not known.
     #[error("velocities or momenta depend on the input `{input}`, whose rate is not known")]
     SignalInMomentum {
         /// The input.

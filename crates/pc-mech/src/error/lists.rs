@@ -10,13 +10,13 @@ pub(super) fn listed(values: &[(String, f64)]) -> String {
     values.iter().map(|(name, value)| format!(", {name} = {}", readable(*value))).collect()
 }
 
-/// A place that was found by approximation.
+/// The text for the position of a jump, which was found approximately.
 pub(super) fn at(place: &[(String, f64)]) -> String {
     let pair = |(name, value): &(String, f64)| format!("{name} = {}", approximately(*value));
     place.iter().map(pair).collect::<Vec<_>>().join(", ")
 }
 
-/// A number that was found by approximation, to ten digits.
+/// The text for a number that was found approximately, with ten digits.
 pub(super) fn approximately(value: f64) -> String {
     readable(format!("{value:.9e}").parse().unwrap_or(value))
 }

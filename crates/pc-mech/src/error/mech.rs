@@ -64,7 +64,8 @@ impl MechError {
     }
 
     /// Whether Lagrange's equations were requested in coordinates that are not independent: their
-    /// number is not that of the quasi-velocities, or their velocities do not follow from these.
+    /// number differs from that of the quasi-velocities, or these do not determine their
+    /// velocities.
     pub fn is_of_dependent_coordinates(&self) -> bool {
         matches!(
             self,
@@ -81,7 +82,7 @@ impl MechError {
         }
     }
 
-    /// The error of the expressions, also where the algebra reports it.
+    /// The error of the expressions, including one that the algebra reports.
     pub fn of_expressions(&self) -> Option<&ExprError> {
         match self {
             MechError::Expr(error) | MechError::Algebra(AlgebraError::Expr(error)) => Some(error),
@@ -91,7 +92,8 @@ impl MechError {
 }
 
 impl From<Failure> for MechError {
-    /// The error of a [`Motion`](crate::Motion); for other vector fields, their message.
+    /// The error that a [`Motion`](crate::Motion) reported; for other vector fields, an error
+    /// with their message.
     fn from(failure: Failure) -> MechError {
         let own = failure.cause().downcast_ref::<MechError>();
         own.cloned().unwrap_or_else(|| EvaluationError::NotEvaluated { cause: failure.to_string() }.into())

@@ -8,11 +8,11 @@ pub struct ShapeError {
     pub what: &'static str,
     /// Its length.
     pub found: usize,
-    /// The length that fits.
+    /// The required number.
     pub expected: usize,
 }
 
-/// An error unless `found` is `expected`.
+/// Returns an error unless `found` equals `expected`.
 pub(crate) fn shape(what: &'static str, found: usize, expected: usize) -> Result<(), ShapeError> {
     if found == expected { Ok(()) } else { Err(ShapeError { what, found, expected }) }
 }

@@ -18,7 +18,7 @@ pub enum TreeError {
         /// Its parent.
         parent: String,
     },
-    /// Bodies that hang on each other in a circle.
+    /// Bodies that are each other's parents in a circle.
     #[error("bodies hang on each other in a circle: {}", bodies.join(" on "))]
     Circle {
         /// Their names, each before its parent.
@@ -32,7 +32,7 @@ pub enum TreeError {
         /// The axis.
         axis: [f64; 3],
     },
-    /// A list of names that does not fit the joint.
+    /// A list of names whose length does not fit the joint.
     #[error("the joint of `{body}` has {expected} {what}; {found} names are given")]
     Names {
         /// The body.
@@ -41,17 +41,17 @@ pub enum TreeError {
         what: &'static str,
         /// Number of names.
         found: usize,
-        /// The number that the joint has.
+        /// The number that the joint needs.
         expected: usize,
     },
-    /// A part of a body that is not constant.
+    /// A property of a body that is not constant.
     #[error("the {what} of `{body}` is constant; here it depends on `{symbol}`")]
     NotConstant {
         /// The body.
         body: String,
         /// Its part.
         what: &'static str,
-        /// Time, a coordinate, a velocity or a state in it.
+        /// The time, coordinate, velocity or state that it contains.
         symbol: String,
     },
     /// Coordinates or quasi-velocities of the tree that the system does not have.

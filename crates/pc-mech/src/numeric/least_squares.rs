@@ -1,11 +1,11 @@
-//! Linear equations in numbers, of any shape and rank.
+//! Numerical solution of linear equations of any shape and rank.
 
 use pc_algebra::Matrix;
 
 use crate::error::MechError;
 use crate::numeric::singular_values::SingularValues;
 
-/// The equations A x = b of a matrix A = U Σ Vᵀ, m × n, solved by its singular values.
+/// The equations A x = b for an m × n matrix A = U Σ Vᵀ, solved by its singular values.
 ///
 /// ```
 /// use pc_mech::{LeastSquares, Matrix};
@@ -34,7 +34,7 @@ impl LeastSquares {
         self.0.rank(tolerance * self.0.values.first().copied().unwrap_or(0.0))
     }
 
-    /// The smallest of the singular values divided by the largest, 0 where A is 0 and 1 where it is empty.
+    /// The smallest of the singular values divided by the largest; 0 if A is zero and 1 if A is empty.
     pub fn reciprocal_condition(&self) -> f64 {
         match (self.0.values.first(), self.0.values.last()) {
             (Some(&largest), Some(&smallest)) if largest > 0.0 => smallest / largest,
@@ -55,7 +55,7 @@ impl LeastSquares {
         self.combined(b, |_, value| if value > 0.0 { value / (value * value + mu) } else { 0.0 })
     }
 
-    /// V Σ' Uᵀ b, where Σ' is a diagonal function of Σ.
+    /// The vector V Σ' Uᵀ b, where Σ' is diagonal with the `inverse` of each entry of Σ.
     fn combined(&self, b: &[f64], inverse: impl Fn(usize, f64) -> f64) -> Vec<f64> {
         let SingularValues { left, values, right } = &self.0;
         let along = |i: usize| left.column(i).zip(b).map(|(u, b)| u * b).sum::<f64>();

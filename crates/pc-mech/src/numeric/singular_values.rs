@@ -5,12 +5,13 @@ use pc_algebra::Matrix;
 
 use crate::error::{MatrixError, MechError};
 
-/// A = U Σ Vᵀ, with U and V orthogonal and square.
+/// The decomposition A = U Σ Vᵀ, with U and V orthogonal and square.
 #[derive(Clone, Debug)]
 pub struct SingularValues {
     /// U, rows × rows.
     pub left: Matrix<f64>,
-    /// The diagonal of Σ, in descending order, as many as the smaller number of rows or columns.
+    /// The diagonal of Σ, in descending order, as many as there are rows or columns, whichever
+    /// is fewer.
     pub values: Vec<f64>,
     /// V, columns × columns.
     pub right: Matrix<f64>,
@@ -41,7 +42,7 @@ impl SingularValues {
         self.values.iter().filter(|&&value| value > tolerance).count()
     }
 
-    /// Columns that span the kernel of a matrix of that rank.
+    /// Columns that span the kernel of the matrix, if it has this rank.
     pub fn kernel(&self, rank: usize) -> Matrix<f64> {
         let columns = self.right.rows();
         Matrix::from_fn(columns, columns - rank, |i, j| self.right[(i, rank + j)])

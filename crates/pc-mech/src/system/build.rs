@@ -1,4 +1,4 @@
-//! From the description of a system to the system.
+//! Builds a system from its description.
 
 use pc_algebra::{AlgebraError, Frame, Matrix, StructureCoefficients};
 use pc_expr::{Expr, SymbolPlaces};
@@ -24,19 +24,19 @@ struct Sums<'g> {
 }
 
 impl<'g> SystemBuilder<'g> {
-    /// The system, its frame closed and its structure coefficients known.
+    /// Builds the system: checks that its frame is closed and determines its structure coefficients.
     ///
     /// # Errors
-    /// [`LagrangianError::Missing`]; [`ShapeError`](crate::ShapeError) for parts that do not fit together;
+    /// [`LagrangianError::Missing`]; [`ShapeError`](crate::ShapeError) for parts whose lengths do not fit together;
     /// [`MechError::Algebra`] for velocities that are not affine in η, a frame that is not closed, or brackets that are
-    /// needed, contradict it, or violate Jacobi's identity; [`FrameError::OfVelocities`] for a frame that contains
+    /// missing, contradict the frame, or violate Jacobi's identity; [`FrameError::OfVelocities`] for a frame that contains
     /// velocities; [`LagrangianError::SignalInMomentum`]; [`LagrangianError::Jumps`], [`LagrangianError::MomentumJumps`] and
-    /// [`FrameError::Jumps`] for anything that would cause an impulse; [`FrameError::OfState`] for a frame or a body placed
-    /// by first-order states; [`BodyError::OfVelocities`](crate::BodyError::OfVelocities) and
+    /// [`FrameError::Jumps`] for anything that would cause an impulse; [`FrameError::OfState`] for a frame that depends on
+    /// first-order states, or a body whose position does; [`BodyError::OfVelocities`](crate::BodyError::OfVelocities) and
     /// [`BodyError::AngularVelocityNotAffine`](crate::BodyError::AngularVelocityNotAffine) of bodies;
     /// [`MatrixError::NotSkew`](crate::MatrixError::NotSkew) and
-    /// [`ForceError::NotAQuasiVelocity`](crate::ForceError::NotAQuasiVelocity) of forces; [`MechError::Expr`] for what
-    /// divides by zero everywhere.
+    /// [`ForceError::NotAQuasiVelocity`](crate::ForceError::NotAQuasiVelocity) of forces; [`MechError::Expr`] for an
+    /// expression that divides by zero everywhere.
     pub fn build(self) -> Result<System<'g>, MechError> {
         let (graph, eta) = (self.graph, self.eta());
         let frame = self.frame_of(&eta)?;
@@ -85,7 +85,7 @@ impl<'g> SystemBuilder<'g> {
         })
     }
 
-    /// ẋ = b η + b_0 (3), with b and b_0 functions of time and coordinates.
+    /// The frame of ẋ = b η + b_0 (3), where b and b_0 are functions of time and coordinates.
     fn frame_of(&self, eta: &[Expr<'g>]) -> Result<Frame<'g>, MechError> {
         let velocities = [eta, &self.velocity_symbols()].concat();
         let (graph, time, x) = (self.graph, self.time, self.coordinates.clone());
@@ -104,7 +104,7 @@ impl<'g> SystemBuilder<'g> {
         Ok(frame)
     }
 
-    /// c_rs^m (5), as given or from the frame.
+    /// The structure coefficients c_rs^m (5), as given or from the frame.
     fn structure_of(&self, frame: &Frame<'g>) -> Result<StructureCoefficients<'g>, MechError> {
         let near = self.near_parameters();
         match &self.structure {
@@ -120,7 +120,7 @@ impl<'g> SystemBuilder<'g> {
         }
     }
 
-    /// The terms of L, with those of the bodies and of gravity, and the forces on bodies.
+    /// The terms of L and of the forces, including those of the bodies and of gravity.
     fn sums(&self, frame: &Frame<'g>, eta: &[Expr<'g>]) -> Result<Sums<'g>, MechError> {
         let moving = Moving::new(frame, eta, &self.states);
         let velocities: Vec<_> = self.velocity_symbols().into_iter().zip(frame.velocities(eta)).collect();
@@ -136,7 +136,7 @@ impl<'g> SystemBuilder<'g> {
         Ok(sums)
     }
 
-    /// Adds the bodies that are placed by expressions.
+    /// Adds the bodies whose positions are given by expressions.
     fn add_bodies(&self, moving: &Moving<'_, 'g>, sums: &mut Sums<'g>) -> Result<(), MechError> {
         for (number, body) in (1..).zip(&self.bodies) {
             let share = body.share(moving)?;
@@ -154,7 +154,7 @@ impl<'g> SystemBuilder<'g> {
         Ok(())
     }
 
-    /// Adds the bodies that joints place.
+    /// Adds the bodies whose positions are given by joints.
     fn add_tree(
         &self,
         tree: Tree<'g>,
@@ -223,10 +223,10 @@ fn check_named<'g>(tree: &Tree<'g>, frame: &Frame<'g>, eta: &[Expr<'g>]) -> Resu
 }
 
 /// Checks that b and b_0 are functions of time and coordinates: a quasi-velocity or velocity in them would be
-/// taken for a constant.
+/// treated as a constant.
 ///
 /// # Errors
-/// [`FrameError::OfVelocities`] naming the first that occurs.
+/// [`FrameError::OfVelocities`] with the first velocity that occurs.
 fn of_position<'g>(frame: &Frame<'g>, velocities: &[Expr<'g>]) -> Result<(), MechError> {
     let entries = [&frame.b().nonzero_entries(), frame.b0()].concat();
     let velocities = SymbolPlaces::of(velocities);

@@ -10,12 +10,13 @@ use crate::system::forces::Force;
 use crate::system::system::System;
 use crate::tree::tree::Tree;
 
-/// The description of a system; every closure receives (t, x, η).
+/// A builder for the description of a system; every closure receives (t, x, η).
 ///
 /// Coordinates and quasi-velocities are named before the closures that use them; apart from that the order is free.
 /// L is the sum of all its parts, given by [`lagrangian`](SystemBuilder::lagrangian),
 /// [`kinetic`](SystemBuilder::kinetic), [`potential`](SystemBuilder::potential),
-/// [`lagrangian_in_velocities`](SystemBuilder::lagrangian_in_velocities) and the bodies, and so is Q.
+/// [`lagrangian_in_velocities`](SystemBuilder::lagrangian_in_velocities) and the bodies; in the same way, Q is the
+/// sum of all its parts.
 #[derive(Clone, Debug)]
 pub struct SystemBuilder<'g> {
     pub(super) graph: &'g Graph,
@@ -93,23 +94,24 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Declares a symbol to be a parameter whose value is a function of time, with its value at the start. A function
-    /// that depends on it does not count as an integral. A [`Motion`](crate::Motion::driven_by) is given its
-    /// [tables](crate::Signals).
+    /// Declares a symbol to be a parameter whose value is a function of time, with its initial value. A function that
+    /// depends on it does not count as an integral. The function itself is given to a
+    /// [`Motion`](crate::Motion::driven_by) as a [table](crate::Signals).
     #[must_use]
     pub fn signal(mut self, symbol: Expr<'g>, value: f64) -> Self {
         self.signals.push(symbol);
         self.parameter(symbol, value)
     }
 
-    /// Names the coordinates x_1..x_n; none for equations on an algebra alone.
+    /// Names the coordinates x_1..x_n; there are none for equations on an algebra alone.
     #[must_use]
     pub fn coordinates<S: AsRef<str>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.coordinates = names.into_iter().map(|name| self.graph.symbol(name.as_ref())).collect();
         self
     }
 
-    /// Names the quasi-velocities η_1..η_k; without it they are the velocities, `x'` for the coordinate `x`.
+    /// Names the quasi-velocities η_1..η_k; without this call they are the velocities, `x'` for the coordinate
+    /// `x`.
     #[must_use]
     pub fn quasi_velocities<S: AsRef<str>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.quasi_velocities =
@@ -119,7 +121,7 @@ impl<'g> SystemBuilder<'g> {
 
     /// Declares a symbol to be a first-order state z with the rate ż(t, x, η, z), such as the current in a motor or the
     /// integral of a controller's error. It is integrated with the motion after the quasi-velocities; L, forces,
-    /// integrals and outputs may depend on it, the frame may not. With p_s = ∂L/∂η_s, dp_s/dt then has the term ż
+    /// integrals and outputs may depend on it, but the frame may not. With p_s = ∂L/∂η_s, dp_s/dt then has the term ż
     /// ∂p_s/∂z.
     ///
     /// ```
@@ -161,7 +163,7 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Gives the frame itself, of the coordinates named and the time symbol `t` of the graph: one from
+    /// Gives the frame itself, in the named coordinates and the time symbol `t` of the graph: one from
     /// [definitions](Frame::from_definitions) η = a ẋ + a_0 (2), or of a [group](crate::LieGroup::left_frame).
     #[must_use]
     pub fn frame(mut self, frame: Frame<'g>) -> Self {
@@ -169,8 +171,8 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Gives the brackets \[X_r, X_s\] = c_rs^m X_m (5) of a stationary frame: needed where b does not determine them
-    /// (rank b < k, or no coordinates), checked against the frame everywhere else.
+    /// Gives the brackets \[X_r, X_s\] = c_rs^m X_m (5) of a stationary frame: they are needed where b does not
+    /// determine them (rank b < k, or no coordinates), and are checked against the frame otherwise.
     #[must_use]
     pub fn algebra(self, algebra: &LieAlgebra) -> Self {
         self.structure(algebra.structure_coefficients())
@@ -184,35 +186,35 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Gives values of symbols near which the system is regular, such as the start of a motion; they are used where an
-    /// identity can only be tested numerically.
+    /// Gives values of symbols near which the system is regular, such as the initial values of a motion; they are used
+    /// where an identity can only be tested numerically.
     #[must_use]
     pub fn near(mut self, values: impl IntoIterator<Item = (Expr<'g>, f64)>) -> Self {
         self.near.centre.extend(values);
         self
     }
 
-    /// Adds to L(t, x, η) = T + U, with U minus the potential energy.
+    /// Adds a term to L(t, x, η) = T + U, where U is minus the potential energy.
     #[must_use]
     pub fn lagrangian(mut self, l: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>) -> Self {
         self.lagrangian.push(l(self.time, &self.coordinates, &self.eta()));
         self
     }
 
-    /// Adds to the kinetic energy T(t, x, η).
+    /// Adds a term to the kinetic energy T(t, x, η).
     #[must_use]
     pub fn kinetic(self, t: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>) -> Self {
         self.lagrangian(t)
     }
 
-    /// Adds to the potential energy −U, which enters L with the opposite sign.
+    /// Adds a term to the potential energy −U, which enters L with the opposite sign.
     #[must_use]
     pub fn potential(self, v: impl FnOnce(Expr<'g>, &[Expr<'g>], &[Expr<'g>]) -> Expr<'g>) -> Self {
         self.lagrangian(|t, x, eta| -v(t, x, eta))
     }
 
-    /// Adds to the Lagrangian in velocities L(t, x, ẋ): the closure receives the velocities in place of η, for which
-    /// ẋ = b η + b_0 (3) is substituted. The coordinates may be redundant.
+    /// Adds a term to the Lagrangian in velocities L(t, x, ẋ): the closure receives the velocities ẋ instead of η,
+    /// and ẋ = b η + b_0 (3) is substituted for them. The coordinates may be redundant.
     ///
     /// ```
     /// # use pc_mech::{Graph, System};
@@ -236,7 +238,7 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Adds a mass point: its kinetic energy, and the force on it.
+    /// Adds a point mass: its kinetic energy, and the force on it.
     #[must_use]
     pub fn particle(
         mut self,
@@ -258,16 +260,16 @@ impl<'g> SystemBuilder<'g> {
     }
 
     /// Adds bodies joined by joints: their kinetic energy, their weight, and the forces on them. The
-    /// coordinates and quasi-velocities of the [`Tree`] are among those of the system, whose
-    /// [kinematics](SystemBuilder::kinematics) has their velocities.
+    /// coordinates and quasi-velocities of the [`Tree`] are among those of the system, and their velocities
+    /// belong to its [kinematics](SystemBuilder::kinematics).
     #[must_use]
     pub fn tree(mut self, tree: Tree<'g>) -> Self {
         self.tree = Some(tree);
         self
     }
 
-    /// Lets gravity with the acceleration g(t), along the axes of their positions, act on all bodies: each
-    /// adds m g · r to L, r being the place of its mass centre.
+    /// Lets gravity with the acceleration g(t), along the axes of their positions, act on all bodies: each adds
+    /// m g · r to L, where r is the position of its mass centre.
     ///
     /// ```
     /// # use pc_mech::{Graph, Particle, System};

@@ -1,7 +1,7 @@
-//! Checks that no impulse follows from energies and frames.
+//! Checks that energies and frames cause no impulses.
 //!
-//! Where L jumps with the position, or ∂L/∂η or the frame with anything but velocities, d/dt ∂L/∂η or X_s L in (9) is an impulse. Derivatives of the
-//! pieces do not show it: the motion would pass as if there were no jump.
+//! Where L jumps with the position, or ∂L/∂η or the frame with anything but velocities, d/dt ∂L/∂η or X_s L in (9) is an impulse.
+//! Derivatives of the pieces do not show it: the motion would pass through as if there were no jump.
 
 use pc_algebra::{Frame, Jump, Neighbourhood};
 use pc_expr::Expr;
@@ -11,7 +11,8 @@ use crate::system::builder::SystemBuilder;
 use crate::system::system::System;
 
 impl<'g> SystemBuilder<'g> {
-    /// Where expressions are regular: near the given values, with the values of the parameters.
+    /// The neighbourhood in which expressions are regular: near the given values, with the values of the
+    /// parameters.
     pub(super) fn near_parameters(&self) -> Neighbourhood<'g> {
         let mut near = self.near.clone();
         near.centre.extend(self.parameters.iter().copied());

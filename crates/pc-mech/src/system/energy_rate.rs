@@ -9,8 +9,8 @@ impl<'g> System<'g> {
     ///
     ///   dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s − ż ∂L/∂z − u̇ ∂L/∂u,
     ///
-    /// z being first-order states and u signals, in terms of (t, x, η): X_0 H at fixed y is −X_0 L at fixed η, so y =
-    /// ∂L/∂η need not be solved for η. Where neither L nor the frame depends on time and b_0 = 0, the rate is the
+    /// where z are first-order states and u signals, in terms of (t, x, η): X_0 H at fixed y is −X_0 L at fixed η, so
+    /// y = ∂L/∂η need not be solved for η. Where neither L nor the frame depends on time and b_0 = 0, the rate is the
     /// power Q_s η_s of the forces.
     pub fn energy_rate(&self) -> Expr<'g> {
         let (graph, eta) = (self.graph(), self.quasi_velocities());

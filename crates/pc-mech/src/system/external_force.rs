@@ -5,23 +5,23 @@ use pc_expr::{Expr, Failure};
 
 use crate::error::{ForceError, MechError};
 
-/// Forces Q_s (8) on the quasi-velocities that were [declared](crate::SystemBuilder::external_force) to have
-/// an external one.
+/// Forces Q_s (8) on the quasi-velocities that were [declared](crate::SystemBuilder::external_force) to have an
+/// external force.
 ///
-/// Implemented by closures `FnMut(t, y, q)` that write all q; a force that may fail, or that knows its
-/// derivatives, implements it by hand. The state y is that of the motion: (x, η), or coordinates and momenta of
+/// Implemented by closures `FnMut(t, y, q)` that write all q; a force that may fail, or whose derivatives are
+/// known, implements the trait itself. The state y is that of the motion: (x, η), or coordinates and momenta of
 /// the [canonical](crate::Canonical) equations.
 pub trait ExternalForce {
     /// Writes the forces at (t, y) to `q`, one for each quasi-velocity declared, in the order of declaration.
     ///
     /// # Errors
-    /// [`Failure`], recoverable if an integrator should try a smaller step.
+    /// A [`Failure`], which is recoverable if an integrator should try a smaller step.
     fn force(&mut self, t: f64, y: &[f64], q: &mut [f64]) -> Result<(), Failure>;
 
     /// Writes the derivatives ∂q_i/∂y_j of the e forces to `dq[i + j * e]`: every entry.
     ///
-    /// Unless implemented, these are difference quotients (q(y + h_j e_j) − q(y))/h_j of the forces alone, with
-    /// h_j = √ε max(1, |y_j|), ε the unit of rounding; the rest of the Jacobian stays exact.
+    /// By default these are difference quotients (q(y + h_j e_j) − q(y))/h_j of the forces alone, with h_j = √ε
+    /// max(1, |y_j|), ε the unit of rounding; the rest of the Jacobian stays exact.
     ///
     /// # Errors
     /// As [`force`](ExternalForce::force).
@@ -30,8 +30,8 @@ pub trait ExternalForce {
     }
 }
 
-/// Writes difference quotients of the forces at (t, y) to `dq`, as [`ExternalForce::jacobian`] does unless it
-/// is implemented; `room` is workspace.
+/// Writes difference quotients of the forces at (t, y) to `dq`, as [`ExternalForce::jacobian`] does by default;
+/// `room` is workspace.
 ///
 /// # Errors
 /// As [`ExternalForce::force`].
@@ -65,7 +65,7 @@ impl<F: FnMut(f64, &[f64], &mut [f64])> ExternalForce for F {
     }
 }
 
-/// The symbols of external forces on the quasi-velocities called `names`: `Q_` before the name.
+/// The symbols of external forces on the quasi-velocities called `names`: `Q_` followed by the name.
 ///
 /// # Errors
 /// [`ForceError::NotAQuasiVelocity`].

@@ -10,7 +10,7 @@ use crate::error::{MatrixError, MechError, shape};
 pub(crate) enum Force<'g> {
     /// Q_s
     OnQuasiVelocities(Vec<Expr<'g>>),
-    /// F_i, with the power F_i ẋ_i: Q_s = b_is F_i = F · X_s x.
+    /// Forces F_i on the coordinates, with the power F_i ẋ_i: Q_s = b_is F_i = F · X_s x.
     OnCoordinates(Vec<Expr<'g>>),
     /// Rayleigh's R: Q_s = −∂R/∂η_s.
     Dissipation(Expr<'g>),
@@ -19,7 +19,7 @@ pub(crate) enum Force<'g> {
 }
 
 impl<'g> Force<'g> {
-    /// Q_1..Q_k in the frame of the quasi-velocities `eta`.
+    /// The components Q_1..Q_k in the frame of the quasi-velocities `eta`.
     ///
     /// # Errors
     /// [`ShapeError`](crate::ShapeError), [`MatrixError::NotSkew`].

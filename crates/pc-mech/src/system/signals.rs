@@ -1,17 +1,17 @@
-//! Inputs that are functions of time given by tables.
+//! Inputs given by tables as functions of time.
 
 use std::sync::Arc;
 
-/// The interpolation of a table between its times.
+/// How a table is interpolated between its times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
     /// By straight lines.
     Linear,
-    /// By the cubic spline with continuous second derivative whose third derivative is continuous at the
-    /// second time and at the last but one, too (C. de Boor, *A Practical Guide to Splines*, ch. IV:
+    /// By the cubic spline with continuous second derivative whose third derivative is also continuous at the
+    /// second and the last but one of the times (C. de Boor, *A Practical Guide to Splines*, ch. IV:
     /// not-a-knot).
     Cubic,
-    /// By the last value before, also after the last time.
+    /// By the last preceding value, even after the last time.
     Hold,
 }
 
@@ -20,7 +20,7 @@ pub enum Interpolation {
 pub struct Table {
     times: Vec<f64>,
     values: Vec<f64>,
-    /// u̇ at the times, of a spline.
+    /// The derivatives u̇ at the times, for a spline.
     slopes: Vec<f64>,
     interpolation: Interpolation,
 }
@@ -41,13 +41,13 @@ pub enum TableError {
     TooShort {
         /// Number of times.
         times: usize,
-        /// The least number.
+        /// The minimum number.
         least: usize,
     },
     /// Times that do not increase.
     #[error("the times of a table must increase: {time} follows {before}")]
     NotRising {
-        /// The place of the later one, from 0.
+        /// The index of the later one, counted from 0.
         place: usize,
         /// The earlier one.
         before: f64,
@@ -57,7 +57,7 @@ pub enum TableError {
     /// A time or a value that is not finite.
     #[error("{value} at place {place} of a table is not a finite number")]
     NotFinite {
-        /// The place, from 0.
+        /// The index, counted from 0.
         place: usize,
         /// The number.
         value: f64,
@@ -79,7 +79,7 @@ pub struct OutsideTable {
 }
 
 impl Table {
-    /// The function with these values at these times.
+    /// A function with these values at these times.
     ///
     /// ```
     /// use pc_mech::{Interpolation, Table};
@@ -90,8 +90,8 @@ impl Table {
     /// ```
     ///
     /// # Errors
-    /// [`TableError`] unless there are as many times as values, two at least (one if it holds), finite, and
-    /// the times increase.
+    /// [`TableError`] unless there are as many times as values, at least two of each (one with
+    /// `Interpolation::Hold`), all of them finite, and the times increase.
     pub fn new(times: Vec<f64>, values: Vec<f64>, interpolation: Interpolation) -> Result<Table, TableError> {
         if times.len() != values.len() {
             return Err(TableError::Lengths { times: times.len(), values: values.len() });
@@ -129,7 +129,7 @@ impl Table {
         self.interpolation
     }
 
-    /// Its value at t, after the jump if there is one at t; none outside the times.
+    /// The value at t, after the jump if there is one at t; none outside the range of times.
     pub fn at(&self, t: f64) -> Option<f64> {
         let last = self.times.len() - 1;
         let after = self.times.partition_point(|&time| time <= t);
@@ -151,7 +151,7 @@ impl Table {
         Some(u + x * (start + x * ((rise - start) / h - curve + x * curve / h)))
     }
 
-    /// u̇ at t on the piece that continues from `from`; zero outside the times.
+    /// The derivative u̇ at t on the piece that contains `from`; zero outside the range of times.
     fn rate(&self, t: f64, from: f64) -> f64 {
         let after = self.times.partition_point(|&time| time <= from);
         let Some(i) = after.checked_sub(1).filter(|_| after < self.times.len()) else { return 0.0 };
@@ -169,7 +169,8 @@ impl Table {
     }
 }
 
-/// The slopes of the spline (not-a-knot): those of a parabola through three points, of a line through two.
+/// The slopes of the spline (not-a-knot); for three points, those of the parabola through them, and for two,
+/// those of the line.
 fn spline(x: &[f64], u: &[f64]) -> Vec<f64> {
     let n = x.len();
     let h: Vec<f64> = x.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -214,20 +215,20 @@ pub struct Signals {
     list: Vec<Signal>,
     /// The times of all tables, in ascending order.
     breaks: Arc<[f64]>,
-    /// The interval between breaks in which evaluations take place; `None` until an integrator enters one.
+    /// The interval between two breaks in which evaluations take place; `None` until an integrator enters one.
     between: Option<(f64, f64)>,
 }
 
 #[derive(Clone, Debug)]
 struct Signal {
     name: String,
-    /// Its place among the parameters.
+    /// Its index among the parameters.
     place: usize,
     table: Arc<Table>,
 }
 
 impl Signals {
-    /// The inputs of these names, with their indices among the parameters.
+    /// The inputs with these names, with their indices among the parameters.
     pub fn new<S: Into<String>>(inputs: impl IntoIterator<Item = (S, usize, Arc<Table>)>) -> Signals {
         let signal = |(name, place, table): (S, usize, _)| Signal { name: name.into(), place, table };
         let list: Vec<Signal> = inputs.into_iter().map(signal).collect();
@@ -238,7 +239,7 @@ impl Signals {
         Signals { list, breaks: breaks.into(), between: None }
     }
 
-    /// Their indices among the parameters.
+    /// The indices of the inputs among the parameters.
     pub fn places(&self) -> impl Iterator<Item = usize> {
         self.list.iter().map(|signal| signal.place)
     }
@@ -253,9 +254,9 @@ impl Signals {
         &self.breaks
     }
 
-    /// Announces that the values [read](Signals::read) next lie between the break t, or the breaks around it, and the
-    /// next one towards `end`: at a jump, those on this side. Returns whether an input has jumped since the last such
-    /// call.
+    /// Declares that the values [read](Signals::read) next are at times in the interval between two breaks that
+    /// contains t and extends towards `end`. At a jump, the values on the side of this interval are used. Returns
+    /// whether an input has jumped since the last such call.
     pub fn enter(&mut self, t: f64, end: f64) -> bool {
         let next = match end >= t {
             true => self.breaks.partition_point(|&time| time <= t),
@@ -270,8 +271,8 @@ impl Signals {
         before.is_some_and(jumps)
     }
 
-    /// u̇ of the input at this place among the parameters, at a break, that on the side that was
-    /// [entered](Signals::enter); zero where no table gives it.
+    /// The derivative u̇ of the input with this index among the parameters; at a break, the one on the side
+    /// that was [entered](Signals::enter); zero if the input has no table.
     pub(crate) fn rate(&self, place: usize, t: f64) -> f64 {
         let entered = self.between.filter(|&(from, to)| (from..=to).contains(&t));
         let (from, _) =
@@ -280,14 +281,14 @@ impl Signals {
         table.map_or(0.0, |table| table.rate(t, from))
     }
 
-    /// The interval that ends with the break of this number.
+    /// The interval that ends at the break with this index.
     fn before(&self, next: usize) -> (f64, f64) {
         let from = next.checked_sub(1).map_or(f64::NEG_INFINITY, |i| self.breaks[i]);
         (from, self.breaks.get(next).copied().unwrap_or(f64::INFINITY))
     }
 
-    /// Writes the values at t among the parameters; at a jump, those on the side that was [entered](Signals::enter),
-    /// if t is at its end. Returns whether one has changed.
+    /// Writes the values at t into the parameters; at a jump, those on the side of the interval that was
+    /// [entered](Signals::enter), if t is one of its ends. Returns whether one has changed.
     ///
     /// # Errors
     /// [`OutsideTable`]
@@ -299,7 +300,7 @@ impl Signals {
         })
     }
 
-    /// As [`read`](Signals::read), but at a jump always the values after it.
+    /// As [`read`](Signals::read), but at a jump it always writes the values after it.
     ///
     /// # Errors
     /// [`OutsideTable`]

@@ -67,7 +67,7 @@ impl<'g> System<'g> {
         self.state_with(&self.quasi_velocities)
     }
 
-    /// The symbols of the state with others, such as momenta, in place of η: x, then these, then z.
+    /// The symbols of the state with other symbols, such as momenta, in place of η: x, then these, then z.
     pub fn state_with(&self, moving: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let states = self.states.iter().map(|(symbol, _)| symbol);
         self.frame.coordinates().iter().chain(moving).chain(states).copied().collect()
@@ -91,14 +91,14 @@ impl<'g> System<'g> {
         self.tree.as_ref().map(|tree| &tree.tree)
     }
 
-    /// The quaternions of its joints, each of four coordinates with |q| = 1. The frame keeps |q|, and motions are
-    /// [projected](pc_expr::VectorField::project) to it.
+    /// The quaternions of its joints, each of four coordinates with |q| = 1. The equations keep |q| constant, and
+    /// motions are [projected](pc_expr::VectorField::project) to it.
     pub fn unit_quaternions(&self) -> &[[Expr<'g>; 4]] {
         &self.unit_quaternions
     }
 
     /// The [tree](System::tree), if its equations are too long to be written out as a whole; they are then derived,
-    /// compiled and printed from body to body.
+    /// compiled and printed body by body.
     pub fn large_tree(&self) -> Option<&Tree<'g>> {
         self.tree().filter(|tree| tree.is_large())
     }
@@ -119,7 +119,7 @@ impl<'g> System<'g> {
         self.signals.iter().map(|&u| (u, self.unused(format!("{u}'"), "_"))).collect()
     }
 
-    /// The parameters that are not signals, with their numbers.
+    /// The parameters that are not signals, with their values.
     pub fn numbers(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
         let numbers = self.parameters.iter().filter(|(symbol, _)| !self.signals.contains(symbol));
         numbers.map(|&(symbol, value)| (symbol, value.into())).collect()
@@ -135,7 +135,7 @@ impl<'g> System<'g> {
         &self.forces
     }
 
-    /// The symbols in Q that stand for [external forces](crate::SystemBuilder::external_force), each with the
+    /// The symbols in Q that represent [external forces](crate::SystemBuilder::external_force), each with the
     /// name of the quasi-velocity on which it acts, in the order of declaration.
     pub fn external_forces(&self) -> &[(String, Expr<'g>)] {
         &self.external
@@ -151,7 +151,7 @@ impl<'g> System<'g> {
         &self.outputs
     }
 
-    /// The symbols of η̇, k of them: integrals and outputs may contain them.
+    /// The k symbols of η̇, which integrals and outputs may contain.
     pub fn accelerations(&self) -> Vec<Expr<'g>> {
         self.quasi_velocities.iter().map(|eta| self.graph().symbol(&format!("{eta}'"))).collect()
     }
@@ -168,8 +168,8 @@ impl<'g> System<'g> {
         self.signals.iter().copied().chain(self.external.iter().map(|&(_, symbol)| symbol)).collect()
     }
 
-    /// The symbols of the system: time, state, parameters, external forces, and any other in its frame, brackets,
-    /// Lagrangian or forces.
+    /// The symbols of the system: time, state, parameters, external forces, and any others in its frame,
+    /// brackets, Lagrangian or forces.
     pub fn symbols(&self) -> Vec<Expr<'g>> {
         let inputs = self.run_time_inputs();
         let mut symbols: Vec<Expr<'g>> = [self.frame.time()]
@@ -195,7 +195,8 @@ impl<'g> System<'g> {
         self.quasi_velocities.iter().copied().chain(parameters).collect()
     }
 
-    /// The symbol of that name, with `mark` before it as often as needed to differ from those of the system.
+    /// The symbol with that name, preceded by `mark` as many times as are needed to distinguish it from the
+    /// symbols of the system.
     pub(crate) fn unused(&self, name: String, mark: &str) -> Expr<'g> {
         let parameters = self.parameters.iter().map(|(symbol, _)| symbol);
         let taken: Vec<Expr<'g>> = self.state().into_iter().chain(parameters.copied()).collect();
@@ -243,7 +244,7 @@ impl<'g> System<'g> {
         }
     }
 
-    /// The same system with the parameters replaced by their numbers: only signals can still change at run time.
+    /// The same system with the parameters replaced by their values: only signals can still change at run time.
     #[must_use]
     pub fn with_parameters_bound(&self) -> System<'g> {
         let graph = self.graph();
@@ -264,7 +265,7 @@ impl<'g> System<'g> {
     /// The same system with other values of its parameters, in the order of declaration.
     ///
     /// # Panics
-    /// If these are not as many as its parameters.
+    /// If there are not as many values as parameters.
     #[must_use]
     pub fn with_parameter_values(&self, values: &[f64]) -> System<'g> {
         assert_eq!(values.len(), self.parameters.len(), "values of the parameters");
@@ -284,7 +285,7 @@ impl<'g> System<'g> {
         System { integrals: other.integrals.clone(), outputs: other.outputs.clone(), ..self.clone() }
     }
 
-    /// The same system with symbols in its integrals and outputs replaced, such as those of reactions.
+    /// The same system with some symbols in its integrals and outputs replaced, such as those of reactions.
     #[must_use]
     pub fn with_observed(&self, known: &[(Expr<'g>, Expr<'g>)]) -> System<'g> {
         let known = self.graph().substitution(known);
@@ -304,7 +305,7 @@ impl<'g> System<'g> {
     /// The same system with further generalised forces, one for each quasi-velocity.
     ///
     /// # Errors
-    /// [`ShapeError`](crate::ShapeError) if there are more or fewer.
+    /// [`ShapeError`](crate::ShapeError) if there are more or fewer of them.
     pub fn with_added_forces(&self, more: &[Expr<'g>]) -> Result<System<'g>, MechError> {
         shape("the list of forces", more.len(), self.forces.len())?;
         Ok(System {
@@ -313,12 +314,12 @@ impl<'g> System<'g> {
         })
     }
 
-    /// The states with their rates in other terms.
+    /// The states with `put` applied to their rates.
     pub(crate) fn states_in(&self, put: impl Fn(&[Expr<'g>]) -> Vec<Expr<'g>>) -> Vec<(Expr<'g>, Expr<'g>)> {
         self.states.iter().map(|&(z, rate)| (z, put(&[rate])[0])).collect()
     }
 
-    /// The momenta ∂L/∂η_s in terms of (t, x, η), length k.
+    /// The k momenta ∂L/∂η_s in terms of (t, x, η).
     pub fn momenta(&self) -> Vec<Expr<'g>> {
         self.graph().gradient(self.lagrangian, &self.quasi_velocities)
     }

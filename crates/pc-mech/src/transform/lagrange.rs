@@ -7,9 +7,9 @@ use crate::error::{LagrangianError, MechError};
 use crate::system::system::System;
 
 impl<'g> System<'g> {
-    /// The system with η = ẋ: its equations (9) are Lagrange's, d/dt ∂L/∂ẋ_i − ∂L/∂x_i = Q_i.
+    /// The system with η = ẋ: its equations (9) are Lagrange's equations, d/dt ∂L/∂ẋ_i − ∂L/∂x_i = Q_i.
     ///
-    /// With η = a ẋ + a_0 (2) for the old quasi-velocities, n = k of them, Q_i = a_si Q_s.
+    /// With η = a ẋ + a_0 (2) for the n = k old quasi-velocities, Q_i = a_si Q_s.
     ///
     /// # Errors
     /// [`LagrangianError::RedundantCoordinates`] if there are not as many quasi-velocities as coordinates, and

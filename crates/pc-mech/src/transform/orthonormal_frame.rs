@@ -11,11 +11,11 @@ use crate::transform::quasi_velocities::QuasiVelocityChange;
 
 impl<'g> System<'g> {
     /// The same system in quasi-velocities that are orthonormal in the kinetic metric, η' = D^½ Lᵀ η with M = L D Lᵀ,
-    /// so that T = ½ η'_s η'_s up to parts of lower degree. One is made for each of the `names`, from the first
+    /// so that T = ½ η'_s η'_s up to parts of lower degree. One is made for each of the `names`, out of the first
     /// quasi-velocities; the others, such as those that constraints keep at zero, are unchanged.
     ///
     /// # Errors
-    /// [`LagrangianError::NotQuadratic`] unless L is quadratic in η, with a metric independent of it;
+    /// [`LagrangianError::NotQuadratic`] unless L is quadratic in η, with a metric independent of η;
     /// [`LagrangianError::Degenerate`]; [`ShapeError`] if there are more names than quasi-velocities.
     ///
     /// ```
@@ -41,10 +41,11 @@ impl<'g> System<'g> {
         Ok(self.orthonormal_change(names)?.system().clone())
     }
 
-    /// The system, with the new quasi-velocities in terms of the old ones, and the old ones in terms of them.
+    /// The system, with the new quasi-velocities in terms of the old ones, and the old ones in terms of the
+    /// new.
     ///
     /// # Errors
-    /// Those of [`in_orthonormal_frame`](System::in_orthonormal_frame).
+    /// As for [`in_orthonormal_frame`](System::in_orthonormal_frame).
     pub fn orthonormal_change<S: AsRef<str>>(
         &self,
         names: impl IntoIterator<Item = S>,

@@ -6,8 +6,8 @@ use pc_expr::Expr;
 use crate::error::{MechError, shape};
 use crate::system::system::System;
 
-/// A system in other quasi-velocities η' = A η + A_0, with these in terms of the old ones, and the old ones
-/// in terms of them.
+/// A system in other quasi-velocities η' = A η + A_0, with the new quasi-velocities in terms of the old, and
+/// the old in terms of the new.
 #[derive(Clone, Debug)]
 pub struct QuasiVelocityChange<'g> {
     system: System<'g>,
@@ -22,17 +22,17 @@ impl<'g> QuasiVelocityChange<'g> {
         &self.system
     }
 
-    /// A, k × k, which is singular where the new quasi-velocities do not determine the old ones.
+    /// The k × k matrix A, which is singular where the new quasi-velocities do not determine the old ones.
     pub fn matrix(&self) -> &Matrix<Expr<'g>> {
         &self.matrix
     }
 
-    /// η' as functions of (t, x, η), length k.
+    /// The k new quasi-velocities η' as functions of (t, x, η).
     pub fn definitions(&self) -> &[Expr<'g>] {
         &self.definitions
     }
 
-    /// η as functions of (t, x, η'), length k.
+    /// The k old quasi-velocities η as functions of (t, x, η').
     pub fn old_quasi_velocities(&self) -> &[Expr<'g>] {
         &self.old
     }
@@ -40,7 +40,7 @@ impl<'g> QuasiVelocityChange<'g> {
 
 impl<'g> System<'g> {
     /// The same system in the quasi-velocities η' = A η + A_0, given by their names and their expressions in the old
-    /// ones. A name may be that of an old quasi-velocity.
+    /// ones. A name may also be that of an old quasi-velocity.
     ///
     /// With η = B η' + B_0 the forces are Q'_u = B_su Q_s; the structure coefficients are those of
     /// [`FrameChange::structure_coefficients`].
@@ -74,10 +74,11 @@ impl<'g> System<'g> {
         Ok(self.quasi_velocity_change(names, definitions)?.system)
     }
 
-    /// The system, with the new quasi-velocities in terms of the old ones, and the old ones in terms of them.
+    /// The system, with the new quasi-velocities in terms of the old ones, and the old ones in terms of the
+    /// new.
     ///
     /// # Errors
-    /// Those of [`in_quasi_velocities`](System::in_quasi_velocities).
+    /// As for [`in_quasi_velocities`](System::in_quasi_velocities).
     pub fn quasi_velocity_change<S: AsRef<str>>(
         &self,
         names: impl IntoIterator<Item = S>,

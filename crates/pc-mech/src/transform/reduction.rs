@@ -8,16 +8,17 @@ use crate::system::bodies::velocity::Bodies;
 use crate::system::system::System;
 
 impl<'g> System<'g> {
-    /// The system without the coordinates that its motion does not depend on: L, Q, c_rs^m and the velocities of
-    /// the kept coordinates do not contain them.
+    /// The system without the coordinates on which its motion does not depend: L, Q, c_rs^m and the velocities
+    /// of the kept coordinates do not contain them.
     ///
     /// On a group with L invariant, X_s L = 0, and constant c_rs^m no coordinate is left, and the equations (9) are
-    /// those of Euler–Poincaré,
+    /// the Euler–Poincaré equations,
     ///
     ///   d/dt ∂L/∂η_s = c_rs^m η_r ∂L/∂η_m + Q_s,
     ///
-    /// the [canonical](System::canonical) ones those of Lie–Poisson, ẏ_s = c_rs^m ∂H/∂y_r y_m. Integrals and outputs
-    /// that contain coordinates left out are left out too. Those coordinates follow by integrating ẋ = b η + b_0 (3).
+    /// the [canonical](System::canonical) ones the Lie–Poisson equations, ẏ_s = c_rs^m ∂H/∂y_r y_m. Integrals and
+    /// outputs that contain these coordinates are left out too. The coordinates can be recovered by integrating ẋ = b
+    /// η + b_0 (3).
     ///
     /// # Errors
     /// [`MechError::Algebra`] if the parts do not fit together, which cannot happen for a system that was

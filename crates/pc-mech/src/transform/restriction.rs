@@ -11,9 +11,9 @@ impl<'g> System<'g> {
     ///
     ///   d/dt ∂θ/∂η_s = (c_rs^m η_r + c_0s^m) ∂θ/∂η_m + (c_rs^α η_r + c_0s^α) (∂L/∂η_α)_0 + X_s (θ + U) + Q_s,
     ///
-    /// r, s, m ≤ `free`, where θ + U is L with the constraints substituted. The second term, which
-    /// substitution alone would lose, counts among its forces, so that its [canonical](System::canonical)
-    /// equations are (34), with y_s = ∂θ/∂η_s.
+    /// r, s, m ≤ `free`, where θ + U is L with the constraints substituted. The second term, which substitution
+    /// alone would lose, is included in its forces, so that its [canonical](System::canonical) equations are
+    /// (34), with y_s = ∂θ/∂η_s.
     ///
     /// Its structure coefficients are the c_rs^m, m ≤ `free`, which are not those of its frame unless the
     /// constraints are integrable; the bracket that they define does not satisfy Jacobi's identity.
@@ -46,8 +46,8 @@ impl<'g> System<'g> {
         })
     }
 
-    /// The system of the first `free` quasi-velocities, the others zero. Its structure coefficients stay
-    /// those of the whole frame, and only the energy may be derived from its Lagrangian.
+    /// The system of the first `free` quasi-velocities, with the others set to zero. Its structure coefficients
+    /// stay those of the whole frame, and only the energy may be derived from its Lagrangian.
     pub(crate) fn restricted(&self, free: usize) -> System<'g> {
         let graph = self.graph();
         let dropped = &self.quasi_velocities[free..];

@@ -1,11 +1,11 @@
-//! From quasi-velocities to velocities and back.
+//! The conversion of quasi-velocities to velocities and back.
 
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
 
 use crate::error::MechError;
 use crate::system::system::System;
 
-/// The compiled conversion between states (x, η) and (x, ẋ) of one system, ẋ = b η + b_0 (3) and η = a ẋ +
+/// The compiled conversion between states (x, η) and (x, ẋ) of one system, by ẋ = b η + b_0 (3) and η = a ẋ +
 /// a_0 (2).
 ///
 /// Where n > k, velocities that the frame does not allow are replaced by the nearest allowed ones: a = (bᵀb)⁻¹bᵀ.
@@ -66,7 +66,7 @@ impl System<'_> {
 }
 
 impl VelocityTransform {
-    /// (x, ẋ), of length 2n, of the state (x, η), of length n + k.
+    /// The state (x, ẋ), of length 2n, that corresponds to (x, η), of length n + k.
     ///
     /// # Panics
     /// If the state has another length.
@@ -76,7 +76,7 @@ impl VelocityTransform {
         result
     }
 
-    /// (x, η), of length n + k, of the state (x, ẋ), of length 2n.
+    /// The state (x, η), of length n + k, that corresponds to (x, ẋ), of length 2n.
     ///
     /// # Panics
     /// If the state has another length.

@@ -1,16 +1,15 @@
-//! Articulated inertias: the inertia of a subtree once the joints beyond a link are eliminated, from the tips
-//! to the root.
+//! Articulated inertias: the inertia of a subtree after the joints beyond a link have been eliminated, from the
+//! tips to the root.
 //!
 //! Forces on a link and its accelerations, six components each, are related by
 //!
 //!   n = J α + H a + n_0,   f = Hᵀ α + M a + f_0,
 //!
-//! with the moment n about its origin and the acceleration a of the origin. A joint that leaves the
-//! component c free, where the force with the moment n about its origin and the acceleration a of that. A
-//! free component c of a joint, with the force τ, is eliminated as a row of a symmetric matrix Φ = (J H; Hᵀ
-//! M) is: w_c = (τ − p_c − Σ_{r≠c} Φ_cr A_r)/Φ_cc, Φ ← Φ − Φ_c Φ_cᵀ/Φ_cc, p ← p + Φ_c (τ − p_c)/Φ_cc.
+//! with the moment n about the origin of the link and the acceleration a of this origin. A free component c of
+//! a joint, with the force τ, is eliminated like a row of a symmetric matrix Φ = (J H; Hᵀ M): w_c = (τ − p_c −
+//! Σ_{r≠c} Φ_cr A_r)/Φ_cc, Φ ← Φ − Φ_c Φ_cᵀ/Φ_cc, p ← p + Φ_c (τ − p_c)/Φ_cc.
 //!
-//! This is the elimination M = Lᵀ D L of the mass matrix of the whole tree, in an order in which it does not fill in
+//! This is the elimination M = Lᵀ D L of the mass matrix of the whole tree, in an order that produces no fill-in
 //! (Featherstone 1983; Rodriguez 1987).
 
 use pc_expr::{Expr, Graph, Number};
@@ -35,7 +34,7 @@ pub(crate) fn moving_part<'g>(a: &Spatial<'g>) -> Vector<'g> {
     vector(|i| a[i + 3])
 }
 
-/// A symmetric matrix of six rows.
+/// A symmetric matrix with six rows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Inertia6<'g>([[Expr<'g>; 6]; 6]);
 
@@ -60,7 +59,7 @@ impl<'g> Inertia6<'g> {
         self.map(|r, c, entry| graph.keep(entry + other.0[r][c]))
     }
 
-    /// The matrix with each entry on and below the diagonal replaced, and those above accordingly.
+    /// The symmetric matrix with each entry on and below the diagonal replaced by `put` of it.
     fn map(&self, put: impl Fn(usize, usize, Expr<'g>) -> Expr<'g>) -> Inertia6<'g> {
         let mut mapped = *self;
         for r in 0..6 {
@@ -72,9 +71,10 @@ impl<'g> Inertia6<'g> {
         mapped
     }
 
-    /// The remaining inertia of a single body, if its resistance to the direction is a number that is not a
-    /// rounding error of `size`. The pivot of the joint is then at least as large: the inertia of the bodies
-    /// beyond is nonnegative, and the remainder of a sum is at least the sum of the remainders.
+    /// The inertia of a single body that remains after elimination, if its resistance to the direction is a
+    /// number that is not a rounding error of `size`. The pivot of the joint is then at least as large: the
+    /// inertia of the bodies beyond it is nonnegative, and the remainder of a sum is at least the sum of the
+    /// remainders.
     fn resisting(&self, graph: &'g Graph, direction: Direction<'g>, size: Expr<'g>) -> Option<Inertia6<'g>> {
         let column = direction.column(graph, self);
         let number = |x: Expr<'g>| x.constant().map(Number::to_f64);
@@ -86,8 +86,8 @@ impl<'g> Inertia6<'g> {
         (tensor(|i, j| self.0[i][j]), tensor(|i, j| self.0[i][j + 3]), tensor(|i, j| self.0[i + 3][j + 3]))
     }
 
-    /// The inertia seen from the parent: rotated to its axes, then about its origin; the origin of the link
-    /// is at `place` relative to it.
+    /// The inertia seen from the parent: rotated to the parent's axes, then taken about its origin; the origin
+    /// of the link is at `place` relative to that.
     ///
     ///   G = Hᵀ − M r̂,   J ← J − H r̂ + r̂ G,   H ← Gᵀ
     fn seen(&self, graph: &'g Graph, turning: &Turning<'g>, place: &Vector<'g>) -> Inertia6<'g> {
@@ -112,7 +112,7 @@ impl<'g> Inertia6<'g> {
     }
 }
 
-/// A force along the parent's axes and about its origin: f, n + r × f.
+/// A force expressed along the parent's axes and about its origin: f, n + r × f.
 pub(crate) fn force_seen<'g>(
     graph: &'g Graph,
     turning: &Turning<'g>,
@@ -143,7 +143,7 @@ fn skew<'g>(r: &Vector<'g>) -> Tensor<'g> {
     [[Expr::ZERO, -r[2], r[1]], [r[2], Expr::ZERO, -r[0]], [-r[1], r[0], Expr::ZERO]]
 }
 
-/// A free component of a joint, eliminated.
+/// A free component of a joint that has been eliminated.
 #[derive(Clone, Debug)]
 pub(crate) struct Freedom<'g> {
     /// The direction in which it moves, in the axes of its link.
@@ -151,27 +151,27 @@ pub(crate) struct Freedom<'g> {
     /// Φ s
     column: Spatial<'g>,
     inverse: Expr<'g>,
-    /// Φ s/(s·Φ s), zero at its own component.
+    /// The vector Φ s/(s·Φ s), with zero at its own component.
     factors: Spatial<'g>,
-    /// s·Φ s with the size of its terms before elimination, if it may vanish.
+    /// The pivot s·Φ s with the size of its terms before elimination, if it may vanish.
     pub(crate) watched: Option<(Expr<'g>, Expr<'g>)>,
     /// Whether s·Φ s is identically zero: no inertia resists the direction.
     pub(crate) is_massless: bool,
 }
 
-/// s, one of the six components; for a screw one of the first three plus a multiple of the displacement along
-/// it.
+/// The direction s, one of the six components; for a screw, one of the first three plus a multiple of the
+/// displacement along the same axis.
 #[derive(Clone, Copy, Debug)]
 struct Direction<'g> {
     component: usize,
     pitch: Expr<'g>,
 }
 
-/// A remainder this small relative to its terms may be rounding.
+/// A remainder this small relative to its terms may be a rounding error.
 const ROUNDING: f64 = 1e-12;
 
 impl<'g> Direction<'g> {
-    /// Whether this is the component number `r` of the six.
+    /// Whether the direction is component `r` of the six.
     fn is_component(&self, r: usize) -> bool {
         self.pitch.is_zero() && r == self.component
     }
@@ -184,7 +184,7 @@ impl<'g> Direction<'g> {
         })
     }
 
-    /// An upper bound of s·Φ s: the trace of J, or of M, in the units of the direction.
+    /// An upper bound on s·Φ s: the trace of J, or of M, in the units of the direction.
     fn size(&self, graph: &'g Graph, phi: &Inertia6<'g>) -> Expr<'g> {
         let trace = |first: usize| graph.sum((first..first + 3).map(|r| phi.0[r][r]));
         match self.component < 3 {
@@ -228,7 +228,7 @@ impl<'g> Freedom<'g> {
 }
 
 impl<'g> Hinge<'g> {
-    /// The free components, in the order of its quasi-velocities.
+    /// The directions of the free components, in the order of the quasi-velocities of the hinge.
     fn directions(&self) -> Vec<Direction<'g>> {
         let of = |component: usize| Direction { component, pitch: Expr::ZERO };
         match self {
@@ -240,20 +240,20 @@ impl<'g> Hinge<'g> {
     }
 }
 
-/// A tree whose joints are eliminated: M⁻¹ in the form in which it is applied, O(N).
+/// A tree whose joints have been eliminated: M⁻¹ in the form in which it is applied, in O(N).
 #[derive(Clone, Debug)]
 pub(crate) struct Articulated<'g> {
     graph: &'g Graph,
     pub(crate) links: Vec<Eliminated<'g>>,
 }
 
-/// A link with its joint eliminated.
+/// A link whose joint has been eliminated.
 #[derive(Clone, Debug)]
 pub(crate) struct Eliminated<'g> {
     pub(crate) parent: Option<usize>,
     pub(crate) turning: Turning<'g>,
     pub(crate) place: Vector<'g>,
-    /// In the order of the quasi-velocities; eliminated one after the other.
+    /// The free components in the order of the quasi-velocities, eliminated one after the other.
     pub(crate) freedoms: Vec<Freedom<'g>>,
 }
 
@@ -297,8 +297,8 @@ impl<'g> Articulated<'g> {
         Articulated { graph, links: eliminated }
     }
 
-    /// The response of the free components to the forces p on the links and the components τ = `applied` of
-    /// the joints, link after link, relative to the accelerations to which p belongs.
+    /// The response of the free components to the forces p on the links and the components τ = `applied` of the
+    /// joints, link by link, relative to the accelerations to which p belongs.
     pub(crate) fn solve(
         &self,
         forces: Vec<Option<Spatial<'g>>>,
@@ -357,8 +357,8 @@ impl<'g> Articulated<'g> {
     }
 }
 
-/// Eliminates a component: the remaining `inertia` does not resist it. Its pivot is watched if the `size` of
-/// its terms is given.
+/// Eliminates a component, so that the remaining `inertia` does not resist it. Its pivot is watched if the
+/// `size` of its terms is given.
 fn eliminate<'g>(
     graph: &'g Graph,
     inertia: &mut Inertia6<'g>,

@@ -7,11 +7,11 @@ use crate::system::bodies::rigid_body::Inertia;
 use crate::tree::joint::Joint;
 use crate::tree::spatial::{Vector, ZERO};
 
-/// A body, and the joint by which it hangs on another.
+/// A body, and the joint that connects it to another.
 #[derive(Clone, Debug)]
 pub struct TreeBody<'g> {
     pub(crate) name: String,
-    /// `None` is the world.
+    /// `None` for the world.
     pub(crate) parent: Option<String>,
     pub(crate) joint: Joint<'g>,
     pub(crate) mass: Expr<'g>,
@@ -22,7 +22,7 @@ pub struct TreeBody<'g> {
 }
 
 impl<'g> TreeBody<'g> {
-    /// A body without mass that hangs on the world.
+    /// A body without mass, attached to the world by `joint`.
     pub fn new(name: impl Into<String>, joint: Joint<'g>) -> TreeBody<'g> {
         TreeBody {
             name: name.into(),
@@ -36,7 +36,7 @@ impl<'g> TreeBody<'g> {
         }
     }
 
-    /// The same body hanging on another.
+    /// The same body, attached to another body.
     #[must_use]
     pub fn on(self, parent: impl Into<String>) -> TreeBody<'g> {
         TreeBody { parent: Some(parent.into()), ..self }
@@ -86,12 +86,12 @@ impl<'g> TreeBody<'g> {
         }
     }
 
-    /// The name of the body that it hangs on; none is the world.
+    /// The name of the body to which it is attached; none for the world.
     pub fn parent(&self) -> Option<&str> {
         self.parent.as_deref()
     }
 
-    /// Its mass m, mass centre c and inertia I about it, along body axes.
+    /// The mass m, the mass centre c and the inertia I about it, along body axes.
     pub fn mass_properties(&self) -> (Expr<'g>, [Expr<'g>; 3], Matrix<Expr<'g>>) {
         (self.mass, self.centre, self.inertia.matrix())
     }

@@ -53,7 +53,7 @@ impl<'g> Acceleration<'g> {
         vector(|i| graph.keep(graph.sum((0..3).map(|j| r[j] * self.field[i][j]).chain([self.a[i]]))))
     }
 
-    /// The moment and force that accelerate a body of this mass.
+    /// The moment and force that accelerate a body with this mass.
     fn force(&self, graph: &'g Graph, body: &MassOnLink<'g>) -> Spatial<'g> {
         let MassOnLink { mass, moment: h, inertia } = body;
         let f = vector(|i| {
@@ -77,7 +77,7 @@ impl<'g> Acceleration<'g> {
     }
 }
 
-/// The equations of a tree: τ, the components of Q + X U on its joints, link after link.
+/// The equations of a tree: with τ, the components of Q + X U on its joints, link by link.
 #[derive(Clone, Debug)]
 pub(crate) struct TreeDynamics<'g> {
     graph: &'g Graph,
@@ -107,7 +107,7 @@ impl<'g> TreeDynamics<'g> {
         }
     }
 
-    /// η̇, link after link.
+    /// The accelerations η̇, link by link.
     pub(crate) fn accelerations(&self) -> Vec<Vec<Expr<'g>>> {
         let (motions, dropped) = self.motions(None);
         let forces =
@@ -119,7 +119,7 @@ impl<'g> TreeDynamics<'g> {
         relative.into_iter().zip(&dropped).map(total).collect()
     }
 
-    /// The same equations without regrouped masses.
+    /// The same equations without regrouping of masses.
     pub(crate) fn with_own_masses(self, tree: &Tree<'g>) -> TreeDynamics<'g> {
         TreeDynamics { masses: (0..tree.links.len()).map(|link| tree.mass_on(link)).collect(), ..self }
     }
@@ -147,7 +147,8 @@ impl<'g> TreeDynamics<'g> {
         forces
     }
 
-    /// τ minus the forces that the accelerations `unknowns` need, link after link: zero for the solution.
+    /// The difference between τ and the forces that the accelerations `unknowns` require, link by link; zero
+    /// for the solution.
     pub(crate) fn balance(&self, unknowns: &[Vec<Expr<'g>>]) -> Vec<Vec<Expr<'g>>> {
         let forces = self.forces_on_joints(unknowns, &vec![[Expr::ZERO; 6]; self.links.len()]);
         let left = |(i, link): (usize, &Eliminated<'g>)| {
@@ -157,8 +158,8 @@ impl<'g> TreeDynamics<'g> {
         self.articulated.links.iter().enumerate().map(left).collect()
     }
 
-    /// The accelerations of the links for these η̇, or in the reference motion, without the components left
-    /// out there.
+    /// The accelerations of the links for these η̇, or, without η̇, in the reference motion, where the free
+    /// components are zero.
     fn motions(&self, unknowns: Option<&[Vec<Expr<'g>>]>) -> (Vec<Acceleration<'g>>, Vec<Vec<Expr<'g>>>) {
         let graph = self.graph;
         let world = Acceleration::new(graph, ZERO, ZERO, self.gravity.map(|g| -g));

@@ -6,7 +6,7 @@ use crate::system::bodies::velocity::BodyVelocity;
 use crate::tree::kinematics::Motions;
 use crate::tree::spatial::{Vector, add, apply, apply_transpose, cross, dot};
 
-/// The terms of the bodies of a tree in L and Q.
+/// The terms that the bodies of a tree add to L and Q.
 pub(crate) struct TreeShare<'g> {
     /// Σ ½ m |v_c|² + ½ ω·Iω (König).
     pub(crate) kinetic: Vec<Expr<'g>>,
@@ -18,11 +18,11 @@ pub(crate) struct TreeShare<'g> {
 }
 
 impl<'g> Motions<'_, 'g> {
-    /// The terms under this acceleration of gravity, for the quasi-velocities `eta`.
+    /// The terms for this acceleration of gravity, for the quasi-velocities `eta`.
     pub(crate) fn share(&self, gravity: &Vector<'g>, eta: &[Expr<'g>]) -> TreeShare<'g> {
         let graph = self.tree.graph;
         let (mut kinetic, mut weight, mut velocities) = (Vec::new(), Vec::new(), Vec::new());
-        // F and N may depend on η: symbols stand for them where the power is differentiated, Q_s = ∂(F·v + N·ω)/∂η_s.
+        // F and N may depend on η: symbols represent them where the power is differentiated, Q_s = ∂(F·v + N·ω)/∂η_s.
         let (mut power, mut values) = (Vec::new(), Vec::new());
         for (body, stand) in self.tree.bodies.iter().zip(&self.tree.stands) {
             let motion = self.of_stand(stand);

@@ -17,7 +17,7 @@ impl TreeEquations<'_> {
     /// Checks that some inertia resists each joint.
     ///
     /// # Errors
-    /// [`LagrangianError::Degenerate`] with the quasi-velocities of those that are not.
+    /// [`LagrangianError::Degenerate`] with the quasi-velocities that no inertia resists.
     pub(crate) fn check_regular(&self, names: &[String]) -> Result<(), LagrangianError> {
         let links = self.system.places.iter().zip(&self.dynamics.articulated.links);
         let freedoms = links.flat_map(|(places, link)| places.iter().zip(&link.freedoms));
@@ -31,7 +31,8 @@ impl TreeEquations<'_> {
         Err(LagrangianError::Degenerate { rank: size - massless.len(), size, quasi_velocities })
     }
 
-    /// Whether it has too many quasi-velocities for a mass matrix as a whole.
+    /// Whether the tree has too many quasi-velocities for its mass matrix to be written
+    /// out as a whole.
     pub(crate) fn is_large(&self) -> bool {
         self.system.is_large()
     }

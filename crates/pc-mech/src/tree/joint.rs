@@ -7,8 +7,8 @@ use crate::tree::spatial::{Tensor, Vector, ZERO, entries_of, unit};
 
 /// A joint: how a body moves relative to its parent.
 ///
-/// It is at a point of the parent, with axes of its own. The origin of the body is the point of the
-/// joint, and the axes of the body are those of the joint where all coordinates of the joint vanish.
+/// It is at a point of the parent, with axes of its own. The origin of the body is the point of the joint, and
+/// the axes of the body coincide with those of the joint when all coordinates of the joint vanish.
 ///
 /// | kind | movement of the body | coordinates, quasi-velocities of a body `arm` |
 /// |---|---|---|
@@ -26,7 +26,7 @@ pub struct Joint<'g> {
     pub(crate) kind: Kind<'g>,
     /// The point of the joint, along the axes of the parent from its origin.
     pub(crate) place: Vector<'g>,
-    /// From the axes of the joint to those of the parent.
+    /// The rotation from the axes of the joint to those of the parent.
     pub(crate) rotation: Tensor<'g>,
     /// Names of coordinates and quasi-velocities, if they differ from the default ones.
     pub(crate) names: Option<(Vec<String>, Vec<String>)>,
@@ -50,48 +50,49 @@ impl<'g> Joint<'g> {
         Joint { kind, place: ZERO, rotation: unit(), names: None }
     }
 
-    /// Holds the body fixed.
+    /// A joint that holds the body fixed.
     pub fn fixed() -> Joint<'g> {
         Joint::of(Kind::Fixed)
     }
 
-    /// Turns about an axis.
+    /// A joint that turns about an axis.
     pub fn revolute(axis: [f64; 3]) -> Joint<'g> {
         Joint::of(Kind::Revolute(axis))
     }
 
-    /// Slides along an axis.
+    /// A joint that slides along an axis.
     pub fn prismatic(axis: [f64; 3]) -> Joint<'g> {
         Joint::of(Kind::Prismatic(axis))
     }
 
-    /// Turns about an axis and slides along it, by the pitch, a length per radian, times the angle.
+    /// A joint that turns about an axis and slides along it, by the angle times the pitch, which is a length
+    /// per radian.
     pub fn screw(axis: [f64; 3], pitch: impl Into<Expr<'g>>) -> Joint<'g> {
         Joint::of(Kind::Screw(axis, pitch.into()))
     }
 
-    /// Slides along an axis and turns about it.
+    /// A joint that slides along an axis and turns about it.
     pub fn cylindrical(axis: [f64; 3]) -> Joint<'g> {
         Joint::of(Kind::Cylindrical(axis))
     }
 
-    /// Turns about the first axis, then about the second, which is carried along.
+    /// A joint that turns about the first axis, then about the second, which is carried along.
     pub fn universal(first: [f64; 3], second: [f64; 3]) -> Joint<'g> {
         Joint::of(Kind::Universal(first, second))
     }
 
-    /// Slides along two axes orthogonal to a normal, which makes them a right-handed system, and turns about
-    /// the normal. For the normal (0, 0, 1) they are x and y.
+    /// A joint that slides along two axes orthogonal to a normal, with which they form a right-handed system,
+    /// and turns about the normal. For the normal (0, 0, 1) the axes are x and y.
     pub fn planar(normal: [f64; 3]) -> Joint<'g> {
         Joint::of(Kind::Planar(normal))
     }
 
-    /// Turns about a point, by a unit quaternion.
+    /// A joint that turns about a point, with a unit quaternion as coordinates.
     pub fn spherical() -> Joint<'g> {
         Joint::of(Kind::Spherical)
     }
 
-    /// Leaves the body free.
+    /// A joint that leaves the body free.
     pub fn free() -> Joint<'g> {
         Joint::of(Kind::Free)
     }
@@ -102,7 +103,7 @@ impl<'g> Joint<'g> {
         Joint { place: place.map(Into::into), ..self }
     }
 
-    /// The same joint with axes that a constant rotation takes to those of the parent.
+    /// The same joint with other axes, given by the constant rotation from them to those of the parent.
     ///
     /// # Panics
     /// If it does not have three rows and columns.
@@ -136,7 +137,7 @@ impl<'g> Joint<'g> {
         }
     }
 
-    /// Coordinates and quasi-velocities of a body of that name.
+    /// Names of the coordinates and quasi-velocities for a body with that name.
     pub(crate) fn names_for(&self, body: &str) -> (Vec<String>, Vec<String>) {
         self.names.clone().unwrap_or_else(|| self.kind.names(body))
     }

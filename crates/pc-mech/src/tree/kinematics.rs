@@ -1,4 +1,4 @@
-//! The motion of bodies, from each one to those that hang on it.
+//! The motion of bodies, computed from each body to those attached to it.
 
 use pc_algebra::{LieGroup, Matrix, Side, UnitQuaternions};
 use pc_expr::{Expr, Graph};
@@ -10,12 +10,12 @@ use crate::tree::spatial::{
 };
 use crate::tree::tree::{Stand, Tree};
 
-/// The motion of a link: its place and axes in the world, and its velocities along its own axes.
+/// The motion of a link: its position and axes in the world, and its velocities along its own axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LinkMotion<'g> {
-    /// Place of its origin.
+    /// The position of its origin.
     pub(crate) place: Vector<'g>,
-    /// From its axes to those of the world.
+    /// The rotation from its axes to those of the world.
     pub(crate) rotation: Tensor<'g>,
     /// Velocity of its origin.
     pub(crate) velocity: Vector<'g>,
@@ -23,7 +23,7 @@ pub(crate) struct LinkMotion<'g> {
 }
 
 impl<'g> LinkMotion<'g> {
-    /// The same motion with each number kept as a step of the recursion.
+    /// The same motion with each quantity kept as a separate step of the recursion.
     fn kept(&self, graph: &'g Graph) -> LinkMotion<'g> {
         let keep = |v: &Vector<'g>| v.map(|component| graph.keep(component));
         LinkMotion {
@@ -67,7 +67,7 @@ impl<'a, 'g> Motions<'a, 'g> {
         stand.link.map_or_else(AT_REST, |link| self.links[link])
     }
 
-    /// The velocity of the origin of a body, along its axes.
+    /// The velocity of the origin of a body, along the axes of the body.
     pub fn velocity(&self, body: &str) -> Option<[Expr<'g>; 3]> {
         let graph = self.tree.graph;
         self.of_body(body).map(|(motion, stand)| {
@@ -76,7 +76,7 @@ impl<'a, 'g> Motions<'a, 'g> {
         })
     }
 
-    /// The angular velocity of a body, along its axes.
+    /// The angular velocity of a body, along the axes of the body.
     pub fn angular_velocity(&self, body: &str) -> Option<[Expr<'g>; 3]> {
         let graph = self.tree.graph;
         self.of_body(body).map(|(motion, stand)| apply_transpose(graph, &stand.rotation, &motion.omega))
@@ -86,20 +86,20 @@ impl<'a, 'g> Motions<'a, 'g> {
 /// The motion of a body relative to its parent.
 #[derive(Clone, Debug)]
 pub struct JointMotion<'g> {
-    /// From the axes of the body to those of its parent, 3 × 3.
+    /// The 3 × 3 matrix from the axes of the body to those of its parent.
     pub rotation: Matrix<Expr<'g>>,
-    /// The place of the origin of the body, along the axes of its parent from the parent's origin.
+    /// The position of the origin of the body, along the axes of its parent from the parent's origin.
     pub place: [Expr<'g>; 3],
-    /// Its angular velocity relative to the parent, along its axes.
+    /// The angular velocity of the body relative to its parent, along the axes of the body.
     pub angular_velocity: [Expr<'g>; 3],
-    /// The velocity of its origin relative to the parent, along its axes.
+    /// The velocity of the origin of the body relative to its parent, along the axes of the body.
     pub velocity: [Expr<'g>; 3],
     /// The quasi-velocities of the joint.
     pub quasi_velocities: Vec<Expr<'g>>,
 }
 
 impl<'g> Tree<'g> {
-    /// ẋ in terms of η (3).
+    /// The velocities ẋ in terms of η (3).
     pub fn velocities(&self) -> Vec<Expr<'g>> {
         self.declared().flat_map(|link| rates(self.graph, &self.links[link].hinge)).collect()
     }
@@ -136,21 +136,21 @@ impl<'g> Tree<'g> {
 }
 
 impl<'g> Motions<'_, 'g> {
-    /// The place of the origin of a body, along the axes of the world.
+    /// The position of the origin of a body, along the axes of the world.
     pub fn place(&self, body: &str) -> Option<[Expr<'g>; 3]> {
         self.of_body(body).map(|(motion, stand)| {
             add(&motion.place, &apply(self.tree.graph, &motion.rotation, &stand.place))
         })
     }
 
-    /// The matrix from the axes of a body to those of the world, 3 × 3.
+    /// The 3 × 3 matrix from the axes of a body to those of the world.
     pub fn rotation(&self, body: &str) -> Option<Matrix<Expr<'g>>> {
         self.of_body(body)
             .map(|(motion, stand)| matrix_of(&product(self.tree.graph, &motion.rotation, &stand.rotation)))
     }
 
-    /// The motion of the link of a body, the place of its mass centre there, and the velocity of the mass
-    /// centre along the axes of the link.
+    /// The motion of the link of a body, the position of the mass centre on the link, and the velocity of the
+    /// mass centre along the axes of the link.
     fn centre(&self, body: usize) -> (LinkMotion<'g>, Vector<'g>, Vector<'g>) {
         let (graph, stand) = (self.tree.graph, &self.tree.stands[body]);
         let motion = self.of_stand(stand);
@@ -168,14 +168,14 @@ impl<'g> Motions<'_, 'g> {
         Some((moving + dot(graph, &motion.omega, &spin)) / 2.0)
     }
 
-    /// m v_c of a body, along the axes of the world.
+    /// The momentum m v_c of a body, along the axes of the world.
     pub fn momentum(&self, body: &str) -> Option<[Expr<'g>; 3]> {
         let i = self.tree.place_of(body)?;
         let (motion, _, velocity) = self.centre(i);
         Some(scaled(self.tree.bodies[i].mass, &apply(self.tree.graph, &motion.rotation, &velocity)))
     }
 
-    /// r_c × m v_c + I ω of a body: its angular momentum about the origin of the world, along the axes of the
+    /// The angular momentum r_c × m v_c + I ω of a body about the origin of the world, along the axes of the
     /// world.
     pub fn angular_momentum(&self, body: &str) -> Option<[Expr<'g>; 3]> {
         let (graph, i) = (self.tree.graph, self.tree.place_of(body)?);
@@ -186,7 +186,7 @@ impl<'g> Motions<'_, 'g> {
         Some(add(&cross(&place, &momentum), &apply(graph, &motion.rotation, &spin)))
     }
 
-    /// Σ m r_c/Σ m of all bodies, along the axes of the world.
+    /// The centre of mass Σ m r_c/Σ m of all bodies, along the axes of the world.
     pub fn centre_of_mass(&self) -> [Expr<'g>; 3] {
         let graph = self.tree.graph;
         let masses = graph.sum(self.tree.bodies.iter().map(|body| body.mass));
@@ -202,12 +202,12 @@ impl<'g> Motions<'_, 'g> {
 }
 
 impl<'g> Link<'g> {
-    /// From its axes to those of its parent.
+    /// The matrix from the axes of the link to those of its parent.
     pub(crate) fn to_parent(&self, graph: &'g Graph) -> Tensor<'g> {
         product(graph, &self.rotation, &self.hinge.turning())
     }
 
-    /// The place of its origin along the axes of its parent.
+    /// The position of the origin of the link, along the axes of its parent.
     pub(crate) fn origin(&self, graph: &'g Graph) -> Vector<'g> {
         add(&self.place, &apply(graph, &self.rotation, &self.hinge.displacement()))
     }
@@ -225,7 +225,8 @@ impl<'g> Link<'g> {
 }
 
 impl<'g> Hinge<'g> {
-    /// From the axes of the link to those of the joint; for a quaternion |q|² times a rotation.
+    /// The matrix from the axes of the link to those of the joint; for a quaternion it is |q|² times a
+    /// rotation.
     pub(crate) fn turning(&self) -> Tensor<'g> {
         match self {
             Hinge::Turn { axis, angle, .. } => plane_rotation(*axis, angle.cos(), angle.sin()),
@@ -236,7 +237,7 @@ impl<'g> Hinge<'g> {
         }
     }
 
-    /// The place of its origin, along the axes of the joint.
+    /// The position of the origin of the link, along the axes of the joint.
     pub(crate) fn displacement(&self) -> Vector<'g> {
         match self {
             Hinge::Turn { axis, pitch, angle, .. } => along(*axis, *pitch * *angle),
@@ -246,7 +247,7 @@ impl<'g> Hinge<'g> {
         }
     }
 
-    /// The velocity of its origin relative to the parent, along its axes.
+    /// The velocity of the origin of the link relative to the parent, along the axes of the link.
     pub(crate) fn velocity(&self) -> Vector<'g> {
         match self {
             Hinge::Turn { axis, pitch, rate, .. } => along(*axis, *pitch * *rate),
@@ -256,7 +257,7 @@ impl<'g> Hinge<'g> {
         }
     }
 
-    /// Its angular velocity relative to the parent, along its axes.
+    /// The angular velocity of the link relative to the parent, along the axes of the link.
     pub(crate) fn omega(&self) -> Vector<'g> {
         match self {
             Hinge::Turn { axis, rate, .. } => along(*axis, *rate),
@@ -266,7 +267,7 @@ impl<'g> Hinge<'g> {
     }
 }
 
-/// ẋ in terms of η.
+/// The rates ẋ of the coordinates of a hinge in terms of η.
 pub(crate) fn rates<'g>(graph: &'g Graph, hinge: &Hinge<'g>) -> Vec<Expr<'g>> {
     let turning = |quaternion: &[Expr<'g>; 4], omega: &Vector<'g>| -> Vec<Expr<'g>> {
         let operators = UnitQuaternions.operators(Side::Left, quaternion);
@@ -282,7 +283,7 @@ pub(crate) fn rates<'g>(graph: &'g Graph, hinge: &Hinge<'g>) -> Vec<Expr<'g>> {
     }
 }
 
-/// The turn about a coordinate axis by an angle of this cosine and sine.
+/// The matrix of a rotation about a coordinate axis by an angle with this cosine and sine.
 fn plane_rotation<'g>(axis: usize, cos: Expr<'g>, sin: Expr<'g>) -> Tensor<'g> {
     let (p, q) = ((axis + 1) % 3, (axis + 2) % 3);
     tensor(|i, j| match (i, j) {
@@ -299,7 +300,7 @@ fn plane_rotation<'g>(axis: usize, cos: Expr<'g>, sin: Expr<'g>) -> Tensor<'g> {
     })
 }
 
-/// A vector along a coordinate axis.
+/// A vector of this length along a coordinate axis.
 pub(crate) fn along<'g>(axis: usize, length: Expr<'g>) -> Vector<'g> {
     scaled(length, &vector(|i| if i == axis { Expr::ONE } else { Expr::ZERO }))
 }

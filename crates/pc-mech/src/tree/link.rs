@@ -4,20 +4,19 @@ use pc_expr::Expr;
 
 use crate::tree::spatial::{Tensor, Vector};
 
-/// An elementary movement of a joint, between two sets of axes; with the masses of the bodies fixed to the
-/// second.
+/// An elementary movement of a joint, between two sets of axes. Bodies can be fixed to the second.
 #[derive(Clone, Debug)]
 pub(crate) struct Link<'g> {
-    /// The link that it hangs on; `None` is the world.
+    /// The link to which it is attached; `None` for the world.
     pub(crate) parent: Option<usize>,
-    /// The place of its origin where its coordinates vanish, and the matrix from its axes there to those of
-    /// the parent.
+    /// The position of its origin when its coordinates vanish, and the matrix from its axes to those of the
+    /// parent in that position.
     pub(crate) place: Vector<'g>,
     pub(crate) rotation: Tensor<'g>,
     pub(crate) hinge: Hinge<'g>,
 }
 
-/// The movement of a link. Axes are numbers of coordinate axes; the symbols are x, then η.
+/// The movement of a link. An axis is the index of a coordinate axis; the symbols are x, then η.
 #[derive(Clone, Debug)]
 pub(crate) enum Hinge<'g> {
     /// Turns about an axis, and advances along it by `pitch` times the angle.
@@ -32,13 +31,13 @@ pub(crate) enum Hinge<'g> {
         way: Expr<'g>,
         rate: Expr<'g>,
     },
-    /// By a unit quaternion, with ω relative to the parent.
+    /// Turns about a point by a unit quaternion, with ω relative to the parent.
     Ball {
         quaternion: [Expr<'g>; 4],
         omega: Vector<'g>,
     },
-    /// The origin at `way` along the axes of the joint, with the velocity v relative to the parent along its
-    /// own axes.
+    /// Moves freely: the origin is at `way` along the axes of the joint, and has the velocity v relative to
+    /// the parent, along the axes of the link.
     Free {
         way: Vector<'g>,
         quaternion: [Expr<'g>; 4],

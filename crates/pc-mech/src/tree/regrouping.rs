@@ -1,6 +1,6 @@
-//! Masses that can be counted with the parent.
+//! Masses that can be attributed to the parent.
 //!
-//! A part of a body's inertia can be counted with the parent: for a body that turns about an axis, its mass
+//! A part of a body's inertia can be attributed to the parent: for a body that turns about an axis, its mass
 //! at the joint, the first moment along the axis, and as much of an inertia about all perpendicular axes as
 //! makes one of them vanish; for a body that turns about a point, its mass there; for one that slides, its
 //! inertia. Accelerations are unchanged, and zero entries cost nothing at each evaluation (*base parameters*;
@@ -34,8 +34,8 @@ impl<'g> Tree<'g> {
                 },
                 Hinge::Turn { .. } | Hinge::Free { .. } => continue,
             };
-            // Masses moved to the world are at rest. The axes of a sliding inertia are the same at each
-            // place.
+            // Masses moved to the world are at rest. The axes of a sliding inertia are the same at every
+            // position.
             if let Some(parent) = link.parent {
                 let moved = moved.seen(self, &link.place, &link.rotation);
                 masses[parent].add(&moved);
@@ -63,7 +63,7 @@ impl<'g> MassOnLink<'g> {
         taken
     }
 
-    /// The masses along the axes of the parent and about its origin, for a link at this place.
+    /// The masses expressed along the axes of the parent and about its origin, for a link at this position.
     fn seen(&self, tree: &Tree<'g>, place: &Vector<'g>, rotation: &Tensor<'g>) -> MassOnLink<'g> {
         let graph = tree.graph;
         let moment = apply(graph, rotation, &self.moment);

@@ -1,12 +1,12 @@
-//! Vectors and matrices of three components.
+//! Vectors and matrices with three components.
 
 use pc_algebra::Matrix;
 use pc_expr::{Expr, Graph};
 
-/// A vector along three axes.
+/// A vector with components along three axes.
 pub(crate) type Vector<'g> = [Expr<'g>; 3];
 
-/// A matrix of three rows.
+/// A matrix with three rows and columns.
 pub(crate) type Tensor<'g> = [[Expr<'g>; 3]; 3];
 
 pub(crate) const ZERO: Vector<'static> = [Expr::ZERO; 3];
@@ -24,7 +24,7 @@ pub(crate) fn tensor<'g>(entry: impl Fn(usize, usize) -> Expr<'g>) -> Tensor<'g>
     std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
 }
 
-/// The entries of a matrix of three rows and columns.
+/// The entries of a matrix with three rows and columns.
 pub(crate) fn entries_of<'g>(matrix: &Matrix<Expr<'g>>) -> Tensor<'g> {
     tensor(|i, j| matrix[(i, j)])
 }

@@ -9,15 +9,15 @@ use crate::tree::link::Link;
 use crate::tree::spatial::Vector;
 use crate::tree::tree::Tree;
 
-/// A system whose inertia is that of a tree: L consists of its kinetic energy, its weight and a force
-/// function U(t, x).
+/// A system whose inertia is entirely that of a tree: L consists of its kinetic energy, its weight and a
+/// force function U(t, x).
 #[derive(Clone, Debug)]
 pub(crate) struct TreeSystem<'g> {
     pub(crate) tree: Tree<'g>,
     pub(crate) gravity: Vector<'g>,
     /// U(t, x)
     pub(crate) others: Expr<'g>,
-    /// The quasi-velocities of each link, by their places in the system.
+    /// The quasi-velocities of each link, by their indices in the system.
     pub(crate) places: Vec<Vec<usize>>,
 }
 
@@ -53,12 +53,12 @@ impl<'g> TreeSystem<'g> {
         of_joints.into_iter().all(follows).then_some(TreeSystem { tree, gravity, others, places })
     }
 
-    /// Whether it has too many quasi-velocities for a mass matrix as a whole.
+    /// Whether the tree has too many quasi-velocities for its mass matrix to be written out as a whole.
     pub(crate) fn is_large(&self) -> bool {
         self.tree.is_large()
     }
 
-    /// T − U, T being a quadratic form in η.
+    /// The energy T − U, where T is a quadratic form in η.
     pub(crate) fn energy(&self) -> Expr<'g> {
         let (kinetic, potential) = self.parts();
         kinetic - potential
@@ -77,7 +77,7 @@ impl<'g> TreeSystem<'g> {
         (graph.sum(share.kinetic), graph.sum(share.weight) + self.others)
     }
 
-    /// Its equations, with the forces Q.
+    /// The equations of the tree, with the forces Q.
     pub(crate) fn dynamics(&self, frame: &Frame<'g>, forces: &[Expr<'g>]) -> TreeDynamics<'g> {
         let graph = self.tree.graph;
         let slopes = frame.contract(&graph.gradient(self.others, frame.coordinates()));
@@ -86,7 +86,7 @@ impl<'g> TreeSystem<'g> {
         TreeDynamics::new(&self.tree, self.gravity, applied)
     }
 
-    /// Components given link after link, in the order of the quasi-velocities of the system.
+    /// Puts components given link by link into the order of the quasi-velocities of the system.
     pub(crate) fn in_order(&self, by_link: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
         let count = self.places.iter().map(Vec::len).sum();
         let mut ordered = vec![Expr::ZERO; count];
@@ -101,7 +101,7 @@ impl<'g> TreeSystem<'g> {
         self.places.iter().map(|places| places.iter().map(|&place| ordered[place]).collect()).collect()
     }
 
-    /// The system with each expression replaced by one of a graph.
+    /// The system with each expression replaced by `put` of it, in another graph.
     pub(crate) fn map<'n>(&self, graph: &'n Graph, put: impl Fn(Expr<'g>) -> Expr<'n>) -> TreeSystem<'n> {
         TreeSystem {
             tree: self.tree.map(graph, &put),
@@ -113,7 +113,7 @@ impl<'g> TreeSystem<'g> {
 }
 
 impl<'g> Tree<'g> {
-    /// Checks that masses and places are constant in their axes.
+    /// Checks that masses and positions are constant along their axes.
     ///
     /// # Errors
     /// [`TreeError::NotConstant`] with the first of `moving` that occurs in one of them.

@@ -1,4 +1,4 @@
-//! The tree: which body hangs on which, and how it moves.
+//! The tree: which body is attached to which, and how it moves.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -13,7 +13,7 @@ use crate::tree::spatial::{
     Tensor, Vector, ZERO, add, apply, congruent, entries_of, product, transpose, unit,
 };
 
-/// Bodies joined by joints: one or more trees that hang on the world.
+/// Bodies joined by joints: one or more trees attached to the world.
 ///
 /// Its coordinates are those of the joints, in the order in which the bodies are declared; its
 /// quasi-velocities are velocities of a body relative to its parent. The velocities of a body follow from
@@ -21,7 +21,8 @@ use crate::tree::spatial::{
 ///
 /// ω = Rᵀ ω_p + ω_joint, v = Rᵀ (v_p + ω_p × r) + v_joint,
 ///
-/// along body axes, with R from the axes of the body to those of its parent and r the place of its origin there.
+/// along body axes, with R from the axes of the body to those of its parent and r the position of its origin
+/// along the latter.
 ///
 /// ```
 /// use pc_mech::{Graph, Joint, System, Tree, TreeBody};
@@ -46,7 +47,7 @@ use crate::tree::spatial::{
 pub struct Tree<'g> {
     pub(crate) graph: &'g Graph,
     pub(crate) bodies: Vec<TreeBody<'g>>,
-    /// The link and place at which each body is fixed.
+    /// The link to which each body is fixed, and where.
     pub(crate) stands: Vec<Stand<'g>>,
     /// The links, each after its parent.
     pub(crate) links: Vec<Link<'g>>,
@@ -54,18 +55,18 @@ pub struct Tree<'g> {
     pub(crate) own: Vec<Range<usize>>,
 }
 
-/// The most elementary joints of a tree whose equations are also derived as a whole: more do not fit on a
-/// page.
+/// The maximum number of elementary joints in a tree whose equations are also derived as a whole: with more,
+/// they do not fit on a page.
 const MANY_LINKS: usize = 4;
 
-/// The link and place at which a body is fixed.
+/// The link to which a body is fixed, and where.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stand<'g> {
-    /// The link; `None` is the world.
+    /// The link; `None` for the world.
     pub(crate) link: Option<usize>,
     /// Its origin, along the axes of the link.
     pub(crate) place: Vector<'g>,
-    /// From its axes to those of the link.
+    /// The rotation from its axes to those of the link.
     pub(crate) rotation: Tensor<'g>,
 }
 
@@ -73,9 +74,9 @@ impl<'g> Tree<'g> {
     /// The tree of bodies, declared in any order.
     ///
     /// # Errors
-    /// [`TreeError`] for two bodies of one name, a parent that does not exist, parents in a circle, an axis
-    /// without a direction, or a list of names that does not fit its joint; [`BodyError`](crate::BodyError)
-    /// for a matrix that is not a rotation.
+    /// [`TreeError`] for two bodies with the same name, a parent that does not exist, parents in a circle, an
+    /// axis without a direction, or a list of names that does not fit its joint;
+    /// [`BodyError`](crate::BodyError) for a matrix that is not a rotation.
     pub fn new(
         graph: &'g Graph,
         bodies: impl IntoIterator<Item = TreeBody<'g>>,
@@ -96,17 +97,17 @@ impl<'g> Tree<'g> {
         Ok(tree)
     }
 
-    /// x, joint after joint.
+    /// The coordinates x, joint by joint.
     pub fn coordinates(&self) -> Vec<Expr<'g>> {
         self.declared().flat_map(|link| self.links[link].hinge.coordinates()).collect()
     }
 
-    /// η, joint after joint.
+    /// The quasi-velocities η, joint by joint.
     pub fn quasi_velocities(&self) -> Vec<Expr<'g>> {
         self.declared().flat_map(|link| self.links[link].hinge.quasi_velocities()).collect()
     }
 
-    /// The quaternions of the joints that have one, |q| = 1.
+    /// The quaternions of the joints that have one; each has |q| = 1.
     pub fn quaternions(&self) -> Vec<[Expr<'g>; 4]> {
         let quaternion = |link: usize| match &self.links[link].hinge {
             Hinge::Ball { quaternion, .. } | Hinge::Free { quaternion, .. } => Some(*quaternion),
@@ -115,7 +116,7 @@ impl<'g> Tree<'g> {
         self.declared().filter_map(quaternion).collect()
     }
 
-    /// The bodies, as they were declared.
+    /// The bodies, in the order of declaration.
     pub fn bodies(&self) -> &[TreeBody<'g>] {
         &self.bodies
     }
@@ -126,17 +127,17 @@ impl<'g> Tree<'g> {
         self.links[links].iter().flat_map(|link| link.hinge.coordinates()).collect()
     }
 
-    /// The place of a body in the order of declaration.
+    /// The index of a body in the order of declaration.
     pub(crate) fn place_of(&self, body: &str) -> Option<usize> {
         self.bodies.iter().position(|known| known.name == body)
     }
 
-    /// The links in the order in which the bodies they belong to are declared.
+    /// The links, in the order in which the bodies to which they belong are declared.
     pub(crate) fn declared(&self) -> impl Iterator<Item = usize> {
         self.own.iter().cloned().flatten()
     }
 
-    /// Adds the links of a body. Returns the place at which it is fixed.
+    /// Adds the links of a body. Returns the link to which the body is fixed, and where.
     fn hang(&mut self, body: usize, parent: Stand<'g>) -> Result<Stand<'g>, MechError> {
         let graph = self.graph;
         let TreeBody { name, joint: Joint { kind, place, rotation, .. }, .. } = &self.bodies[body];
@@ -145,7 +146,7 @@ impl<'g> Tree<'g> {
         let mut eta = velocities.iter().map(|name| graph.symbol(name));
         let mut x = || x.next().unwrap_or(Expr::ZERO); // the kind determines their number
         let mut eta = || eta.next().unwrap_or(Expr::ZERO);
-        // The place of the joint on the link of the parent.
+        // The position of the joint on the link of the parent.
         let place = add(&parent.place, &apply(graph, &parent.rotation, place));
         let rotation = product(graph, &parent.rotation, rotation);
         let align = |axis: &[f64; 3]| {
@@ -225,12 +226,12 @@ impl<'g> Tree<'g> {
         Ok(stand)
     }
 
-    /// Whether it has too many quasi-velocities for a mass matrix as a whole.
+    /// Whether the tree has too many quasi-velocities for its mass matrix to be written out as a whole.
     pub(crate) fn is_large(&self) -> bool {
         self.links.len() > MANY_LINKS
     }
 
-    /// The tree with each expression replaced by one of a graph.
+    /// The tree with each expression replaced by `put` of it, in another graph.
     pub(crate) fn map<'n>(&self, graph: &'n Graph, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> Tree<'n> {
         let stand = |stand: &Stand<'g>| Stand {
             link: stand.link,
@@ -283,7 +284,8 @@ impl<'g> Tree<'g> {
         })
     }
 
-    /// The mass, first moment and inertia about its origin of all bodies fixed to a link, along its axes.
+    /// The mass, the first moment and the inertia about the origin of the link of all bodies fixed to it, along
+    /// its axes.
     pub(crate) fn mass_on(&self, link: usize) -> MassOnLink<'g> {
         let graph = self.graph;
         let mut on_link = MassOnLink { mass: Expr::ZERO, moment: ZERO, inertia: [ZERO; 3] };
@@ -306,7 +308,7 @@ impl<'g> Tree<'g> {
     }
 }
 
-/// m, m c and the inertia about the origin of a link.
+/// The mass m, the first moment m c and the inertia about the origin of a link.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MassOnLink<'g> {
     pub(crate) mass: Expr<'g>,
@@ -315,18 +317,18 @@ pub(crate) struct MassOnLink<'g> {
 }
 
 impl<'g> Stand<'g> {
-    /// A point of a body along the axes of the link.
+    /// The position of a point of a body, along the axes of the link.
     pub(crate) fn point(&self, graph: &'g Graph, point: &Vector<'g>) -> Vector<'g> {
         add(&self.place, &apply(graph, &self.rotation, point))
     }
 
-    /// The inertia of a body about its mass centre along the axes of the link.
+    /// The inertia of a body about its mass centre, along the axes of the link.
     pub(crate) fn inertia(&self, graph: &'g Graph, body: &TreeBody<'g>) -> Tensor<'g> {
         congruent(graph, &self.rotation, &entries_of(&body.inertia.matrix()))
     }
 }
 
-/// The bodies with their parents, parents first.
+/// The indices of the bodies and of their parents, parents first.
 fn from_root_to_tip(bodies: &[TreeBody<'_>]) -> Result<Vec<(usize, Option<usize>)>, TreeError> {
     let mut places = HashMap::new();
     for (place, body) in bodies.iter().enumerate() {
@@ -348,7 +350,7 @@ fn from_root_to_tip(bodies: &[TreeBody<'_>]) -> Result<Vec<(usize, Option<usize>
     let mut order = Vec::with_capacity(bodies.len());
     let mut hung = vec![false; bodies.len()];
     for body in 0..bodies.len() {
-        // The body and those of its ancestors that are not yet placed.
+        // The body and those of its ancestors that are not yet in the list.
         let mut line = vec![body];
         while let Some(parent) = parents[line[line.len() - 1]].filter(|&parent| !hung[parent]) {
             if line.contains(&parent) {
@@ -369,7 +371,7 @@ fn from_root_to_tip(bodies: &[TreeBody<'_>]) -> Result<Vec<(usize, Option<usize>
     Ok(order)
 }
 
-/// A coordinate axis, and the rotation that takes it to a direction.
+/// The index of a coordinate axis, and the rotation that takes this axis to a direction.
 fn aligned<'g>(direction: [f64; 3]) -> Option<(usize, Tensor<'g>)> {
     let length = direction.iter().fold(0.0f64, |length, c| length.hypot(*c));
     if !(length.is_normal()) {
@@ -402,7 +404,7 @@ fn aligned<'g>(direction: [f64; 3]) -> Option<(usize, Tensor<'g>)> {
     Some((2, std::array::from_fn(|i| [u[i].into(), v[i].into(), n[i].into()])))
 }
 
-/// A vector of numbers.
+/// The components of a vector as numbers.
 fn numbers(v: &Vector<'_>) -> [f64; 3] {
     v.map(|component| component.constant().map_or(f64::NAN, Number::to_f64))
 }

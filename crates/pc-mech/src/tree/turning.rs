@@ -5,18 +5,18 @@ use pc_expr::{Expr, Graph};
 use crate::tree::link::{Hinge, Link};
 use crate::tree::spatial::{Tensor, Vector, apply, congruent, tensor, transpose, unit, vector};
 
-/// A rotation: that of the hinge, then a constant one.
+/// A rotation composed of that of the hinge and a constant one after it.
 #[derive(Clone, Debug)]
 pub(crate) struct Turning<'g> {
     hinge: HingeTurning<'g>,
-    /// `None` is the unit matrix.
+    /// `None` for the unit matrix.
     constant: Option<Tensor<'g>>,
 }
 
 #[derive(Clone, Debug)]
 enum HingeTurning<'g> {
     None,
-    /// About a coordinate axis.
+    /// A rotation about a coordinate axis.
     Plane {
         axis: usize,
         cos: Expr<'g>,
@@ -40,7 +40,7 @@ impl<'g> Turning<'g> {
         Turning { hinge, constant }
     }
 
-    /// From the axes of the link to those of the parent.
+    /// Rotates a vector from the axes of the link to those of the parent.
     pub(crate) fn to_parent(&self, graph: &'g Graph, v: &Vector<'g>) -> Vector<'g> {
         let turned = match &self.hinge {
             HingeTurning::None => *v,
@@ -51,7 +51,7 @@ impl<'g> Turning<'g> {
         turned.map(|component| graph.keep(component))
     }
 
-    /// From the axes of the parent to those of the link.
+    /// Rotates a vector from the axes of the parent to those of the link.
     pub(crate) fn to_link(&self, graph: &'g Graph, v: &Vector<'g>) -> Vector<'g> {
         let v = self.constant.map_or(*v, |constant| apply(graph, &transpose(&constant), v));
         let turned = match &self.hinge {
@@ -62,7 +62,7 @@ impl<'g> Turning<'g> {
         turned.map(|component| graph.keep(component))
     }
 
-    /// R A Rᵀ, for A given along the axes of the link.
+    /// The matrix R A Rᵀ, for A given along the axes of the link.
     pub(crate) fn matrix_to_parent(&self, graph: &'g Graph, a: &Tensor<'g>) -> Tensor<'g> {
         let turned = match &self.hinge {
             HingeTurning::None => *a,

@@ -1,4 +1,4 @@
-//! The motion across a place where constraints lose rank.
+//! The motion across a state at which constraints lose rank.
 
 use std::ops::Range;
 
@@ -12,41 +12,44 @@ use crate::compiled::motion::Motion;
 use crate::compiled::point::Point;
 use crate::error::{ConstraintError, MechError};
 
-/// If the least pivot is below this, a place where it vanishes is looked for ahead: steps get short there.
+/// If the least pivot is below this, a state where it vanishes is looked for ahead, since steps get short
+/// there.
 const NEAR: f64 = 0.1;
 
-/// How many steps ahead.
+/// How many steps ahead such a state is looked for.
 const STEPS_AHEAD: f64 = 5.0;
 
-/// A least pivot below this is rounding: positions are known to 1e-16, directions to this fraction.
+/// A least pivot below this is treated as rounding error: positions are known to 1e-16, directions only to this
+/// fraction.
 const LOST: f64 = 1e-7;
 
-/// The error of a bridge, as a fraction of the state: the tolerance of a projection, which rates near the place
-/// magnify by the inverse of the least pivot; and the largest error allowed.
+/// The error of a bridge, as a fraction of the state: the tolerance of a projection, which rates near the loss
+/// of rank magnify by the inverse of the least pivot; and the largest error allowed.
 const MAGNIFIED: f64 = 1e-11;
 const LARGEST_ERROR: f64 = 1e-8;
 
-/// The error up to which a step across the place is confirmed, and the fraction of its length that is tried
-/// last.
+/// The error up to which a step across the loss of rank is confirmed, the tolerance of the smooth motion
+/// compared with it, and the smallest fraction of its length that is tried.
 const CONFIRMED: f64 = 1e-3;
 const COARSE: f64 = 1e-6;
 const SHORTEST: f64 = 1.0 / 256.0;
 
-/// The parts of a smooth motion, in each of which constraints turn by less than a right angle.
+/// The number of parts into which a smooth motion is divided; constraints are assumed to turn by less than a
+/// right angle in each.
 const PARTS: usize = 16;
 
-/// The number of halvings by which the place is found.
+/// The number of halvings by which the loss of rank is located.
 const HALVINGS: usize = 30;
 
 /// What happens to the rank of the constraints along a smooth motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Rank {
-    /// Nothing.
+    /// It is not lost.
     Full,
     /// It is lost at a state that satisfies the constraints: motions cross there.
     Lost,
-    /// It is lost at a state that does not: this is not a motion, since it leaves the surface for another
-    /// sheet of it.
+    /// It is lost at a state that does not satisfy them: this is not a motion, since it leaves the surface for
+    /// another sheet of it.
     Passed,
 }
 
@@ -54,7 +57,8 @@ enum Rank {
 pub(crate) type Rates<'a> = dyn FnMut(&mut Motion, f64, &[f64], &mut [f64]) -> Result<(), Failure> + 'a;
 
 impl Motion {
-    /// Watches the rank of the constraints from one end of a step to the other; builds a bridge where it is lost ahead.
+    /// Watches the rank of the constraints from one end of a step to the other, and builds a bridge if it is about to
+    /// be lost.
     ///
     /// # Errors
     /// [`RankLost`](crate::ConstraintError::RankLost) where the motion is undetermined.
@@ -138,7 +142,7 @@ impl Motion {
         }))
     }
 
-    /// The smooth motion to `end`, and what happens to the rank on it.
+    /// The smooth motion to `end`, and what happens to the rank along it.
     fn ahead(
         &mut self,
         from: (f64, &[f64]),
@@ -151,15 +155,15 @@ impl Motion {
         Some((motion, rank))
     }
 
-    /// Whether a polynomial may stand for the motion: it has no derivatives with respect to state and parameters, and
-    /// does not show forces that jump or have corners.
+    /// Whether a polynomial may replace the motion: it has no derivatives with respect to state and parameters, and
+    /// does not represent forces that jump or have corners.
     fn takes_bridge(&self, from: f64, end: f64) -> bool {
         let has_derivatives = self.options.jvp || self.options.parameter_jacobian;
         let breaks = self.signals.breaks().iter().any(|&t| (t - from) * (t - end) <= 0.0);
         !has_derivatives && !breaks && !self.watch.refuses && self.switches.is_none()
     }
 
-    /// Whether a step between whose ends rank may have been lost follows the smooth motion.
+    /// Whether a step follows the smooth motion, if rank may have been lost between its ends.
     fn passes(&mut self, from: (f64, &[f64]), to: (f64, &[f64]), rates: &mut Rates<'_>) -> bool {
         let (mut t, mut y) = (from.0, from.1.to_vec());
         let (mut length, mut is_lost) = (to.0 - from.0, false);
@@ -199,8 +203,8 @@ impl Motion {
         Collocation::new(&mut flow, from, end, &groups, tolerance)
     }
 
-    /// What happens to the rank along a smooth motion: the orientation of the space that the constraints span changes
-    /// where it is lost.
+    /// What happens to the rank along a smooth motion: where it is lost, the orientation of the space spanned by the
+    /// constraints changes.
     fn rank_along(&mut self, motion: &Collocation) -> Option<Rank> {
         let at = |field: &mut Motion, t: f64| {
             let state = motion.state(t);
@@ -212,7 +216,7 @@ impl Motion {
         let mut before = start.clone();
         for part in 1..=PARTS {
             let next = at(self, motion.start + (motion.end - motion.start) * part as f64 / PARTS as f64);
-            // At the place itself there is no such space.
+            // At the loss of rank itself there is no such space.
             if next.is_none() && part < PARTS {
                 continue;
             }
@@ -247,7 +251,7 @@ impl Motion {
         self.is_reversed((&a.2, (a.0, &a.1)), (&b.2, (b.0, &b.1))).ok()
     }
 
-    /// Whether the constraints hold at a time of a smooth motion where they may have lost rank.
+    /// Whether the constraints hold on a smooth motion at a time when they may have lost rank.
     fn crosses(&mut self, motion: &Collocation, t: f64, start: (f64, &[f64])) -> Option<bool> {
         let state = motion.state(t);
         let Motion { surface: Some(surface), parameters: p, .. } = self else { return None };

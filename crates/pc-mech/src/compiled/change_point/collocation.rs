@@ -1,4 +1,5 @@
-//! A smooth motion as a polynomial whose rates agree with the field away from its middle.
+//! A smooth motion represented by a polynomial whose rates agree with the field away from the middle of the
+//! interval.
 
 use std::ops::Range;
 
@@ -9,23 +10,24 @@ use crate::numeric::least_squares::LeastSquares;
 /// The number of terms of the rates.
 const TERMS: usize = 8;
 
-/// The nodes on either side of the middle: the zeros of Legendre's P_5 from 0 to 1, moved to the outer part.
+/// The nodes on either side of the middle: the zeros of Legendre's P_5, shifted to the interval from 0 to 1 and
+/// mapped to the outer part of each half.
 const NODES: [f64; 5] = [0.046910077030668, 0.2307653449471585, 0.5, 0.7692346550528415, 0.953089922969332];
 
-/// The fraction of the interval around its middle that has no node: rates lose their digits there.
+/// The fraction of the interval, around its middle, that contains no node, since rates lose digits there.
 const MIDDLE: f64 = 0.4;
 
-/// The most iterations: each gains digits in proportion to the length.
+/// The maximum number of iterations: each gains more digits the shorter the interval.
 const MOST_ITERATIONS: usize = 20;
 
-/// How often the remaining distance may grow before the iteration is given up.
+/// How many times the remaining distance may grow before the iteration is given up.
 const MOST_RETURNS: usize = 2;
 
 /// The motion y(t) from y(a) to t = b with x = 2 (t − a)/(b − a) − 1 and
 ///
 ///   ẏ = Σ_j g_j P_j(x),   y = y(a) + (b − a) Σ_j g_j (P_{j+1}(x) − P_{j−1}(x))/(4j + 2),
 ///
-/// in the polynomials of Legendre, P_{−1} = −1. The rates at the nodes agree with the field by least squares.
+/// with Legendre polynomials P_j and P_{−1} = −1. The rates at the nodes agree with the field by least squares.
 #[derive(Clone, Debug)]
 pub(crate) struct Collocation {
     pub(crate) start: f64,
@@ -33,17 +35,17 @@ pub(crate) struct Collocation {
     from: Vec<f64>,
     /// g_j
     series: Vec<Vec<f64>>,
-    /// The largest size of the components of each group.
+    /// The largest absolute value among the components of each group.
     sizes: Vec<(Range<usize>, f64)>,
 }
 
-/// The flow that defines a motion: moves a state at a time to where it belongs and writes its rates there; false if
-/// it cannot.
+/// The flow that defines a motion: moves a state at a given time to the nearest admissible one and writes the rates
+/// there; false if it cannot.
 pub(crate) type Flow<'a> = dyn FnMut(f64, &mut [f64], &mut [f64]) -> bool + 'a;
 
 impl Collocation {
-    /// The motion from (t, y) to `end`, if there is one that `flow` confirms at all nodes up to the fraction
-    /// `tolerance` of the largest component of each of the `groups`.
+    /// The motion from (t, y) to `end`, if there is one with which `flow` agrees at all nodes to within the
+    /// fraction `tolerance` of the largest component of each of the `groups`.
     pub(crate) fn new(
         flow: &mut Flow<'_>,
         (t, y): (f64, &[f64]),
@@ -73,13 +75,13 @@ impl Collocation {
             let before = motion.state(end);
             motion.series = series;
             let change = motion.distance(&before, &motion.state(end));
-            // Until it consists of rounding.
+            // Until the change is only rounding error.
             if change <= f64::EPSILON || change <= tolerance && 2.0 * change >= last {
                 let ends = |j: usize| {
                     let term: Vec<f64> = motion.series[j].iter().map(|g| length * g).collect();
                     motion.distance(&term, &vec![0.0; y.len()]) <= tolerance
                 };
-                // Of an even or odd motion every second term vanishes.
+                // In an even or odd motion every second term vanishes.
                 let is_smooth = ends(TERMS - 2) && ends(TERMS - 1);
                 return (is_smooth && moved <= tolerance).then_some(motion);
             }
@@ -92,7 +94,8 @@ impl Collocation {
         None
     }
 
-    /// The series of the rates at the nodes, and the longest distance by which a state was moved there.
+    /// The Legendre series fitted to the rates at the nodes, and the longest distance by which a state was
+    /// moved there.
     fn improved(
         &self,
         flow: &mut Flow<'_>,
@@ -139,12 +142,12 @@ impl Collocation {
         }
     }
 
-    /// Whether a time lies in it, its ends included.
+    /// Whether a time lies in the interval of the polynomial, ends included.
     pub(crate) fn contains(&self, t: f64) -> bool {
         (t - self.start) * (t - self.end) <= 0.0
     }
 
-    /// The distance of two states, as a fraction of the largest component of each group.
+    /// The distance between two states, as a fraction of the largest component of each group.
     pub(crate) fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
         let part = |(group, size): &(Range<usize>, f64)| {
             let apart = group.clone().map(|i| (a[i] - b[i]).abs()).fold(0.0, larger);
@@ -154,7 +157,7 @@ impl Collocation {
     }
 }
 
-/// The larger of two numbers; NaN if one is (f64::max would lose it).
+/// The larger of two numbers; NaN if one of them is NaN (f64::max would lose it).
 fn larger(a: f64, b: f64) -> f64 {
     if a > b || a.is_nan() { a } else { b }
 }
@@ -167,7 +170,7 @@ fn legendre(x: f64) -> impl Iterator<Item = f64> {
     std::iter::successors(Some((0.0, 0.0, 1.0)), next).map(|(_, _, p)| p)
 }
 
-/// The places x of the nodes.
+/// The positions x of the nodes.
 fn nodes() -> impl Iterator<Item = f64> {
     let outer = NODES.map(|node| MIDDLE + (1.0 - MIDDLE) * node);
     outer.into_iter().rev().map(|x| -x).chain(outer)
@@ -178,7 +181,7 @@ mod tests {
     use super::*;
 
     /// ẍ = −x from (1, 0) over half a unit of time: the terms left out, from 4⁻⁸/(15·13⋯3) = 8e-12 on, are far below the
-    /// last terms kept, of 1e-8, which judge the error.
+    /// last terms kept, of 1e-8, by which the error is judged.
     #[test]
     fn an_oscillation_is_followed() {
         let mut flow = |_: f64, y: &mut [f64], rates: &mut [f64]| {

@@ -3,10 +3,10 @@
 use crate::compiled::change_point::collocation::Collocation;
 use crate::compiled::elimination::saddle_point::{Independence, Pivot};
 
-/// A state this near to a bridge, as a fraction of its components, belongs to the motion on it.
+/// A state this near to a bridge, as a fraction of its components, is taken to lie on it.
 const ON_BRIDGE: f64 = 1e-2;
 
-/// The rank at the end of the last step, and the motion across the place where it is lost.
+/// The rank at the end of the last step, and the motion across the state where it is lost.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Watch {
     pub(super) last: Option<Box<Seen>>,
@@ -23,13 +23,13 @@ pub(super) struct Seen {
     pub(super) t: f64,
     pub(super) state: Vec<f64>,
     pub(super) rank: Independence,
-    /// The largest coefficient so far of each constraint: the size that its coefficients have elsewhere.
+    /// The largest coefficient of each constraint so far, as a measure of their size elsewhere.
     sizes: Vec<f64>,
-    /// The least pivot in these units.
+    /// The least pivot relative to these coefficients.
     pub(super) least: f64,
-    /// The largest of these so far.
+    /// The largest of these least pivots so far.
     pub(super) largest: f64,
-    /// The distance in time at which a bridge was tried last.
+    /// How far ahead in time a bridge was last tried.
     pub(super) tried: f64,
 }
 
@@ -60,7 +60,7 @@ impl Seen {
     }
 }
 
-/// The least of the pivots in units of the sizes of their constraints, and its place.
+/// The least of the pivots relative to the sizes of their constraints, and its index.
 fn least(rank: &Independence, sizes: &[f64]) -> (f64, usize) {
     let relative = |pivot: &Pivot| pivot.size / sizes[pivot.constraint];
     let places = rank.pivots.iter().map(relative).zip(0..);
@@ -74,12 +74,12 @@ impl Watch {
         self.bridge.as_deref().filter(|bridge| bridge.contains(t) && bridge.is_near(t, y))
     }
 
-    /// Forgets what is known: another motion begins.
+    /// Forgets the rank and the bridge, since another motion begins.
     pub(crate) fn forget(&mut self) {
         (self.last, self.bridge) = (None, None);
     }
 
-    /// Announces a method that needs more than rates.
+    /// Declares that the method needs derivatives of the rates, so that bridges are not used.
     pub(crate) fn refuse_bridges(&mut self) {
         self.refuses = true;
     }

@@ -5,16 +5,16 @@ use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Pattern, Progr
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::point::Point;
 
-/// A derivative with more operations is interpreted: integrators evaluate it once in dozens of steps,
-/// and compiling it would take longer than a run.
+/// A derivative with more operations than this is interpreted: integrators evaluate it once in dozens
+/// of steps, and compiling it would take longer than a run.
 const LONG_DERIVATIVE: usize = 5000;
 
-/// How the entries of a matrix are written.
+/// Which entries of a matrix are written, and in what order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Storage {
-    /// All entries, column after column.
+    /// All entries, column by column.
     Dense,
-    /// The entries of its pattern, in order.
+    /// The entries in its pattern, in order.
     Sparse,
 }
 
@@ -33,7 +33,7 @@ pub(crate) fn derivative<'g>(
     Ok(Evaluator::new(program, if long { Backend::Interpreter } else { backend }))
 }
 
-/// The nonzero entries of a column with their rows; or of a row with their columns.
+/// The nonzero entries of a column with their row indices, or of a row with their column indices.
 pub(crate) type SparseColumn<'g> = Vec<(usize, Expr<'g>)>;
 
 /// The nonzero entries of a column.
@@ -41,7 +41,7 @@ pub(crate) fn sparse<'g>(column: &[Expr<'g>]) -> SparseColumn<'g> {
     column.iter().copied().enumerate().filter(|(_, x)| !x.is_zero()).collect()
 }
 
-/// The pattern of a matrix, and its nonzero entries, column after column.
+/// The pattern of a matrix, and its nonzero entries, column by column.
 pub(crate) fn nonzeros<'g>(
     rows: usize,
     columns: impl IntoIterator<Item = SparseColumn<'g>>,
@@ -53,7 +53,7 @@ pub(crate) fn nonzeros<'g>(
     (pattern, values)
 }
 
-/// A matrix of functions of (t, y, p), compiled.
+/// A compiled matrix of functions of (t, y, p).
 #[derive(Clone, Debug)]
 pub(crate) struct Columns {
     pattern: Pattern,
@@ -62,7 +62,7 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
-    /// The matrix of the columns given.
+    /// The matrix with the given columns.
     ///
     /// # Errors
     /// As for [`Program::new`].
@@ -81,7 +81,7 @@ impl Columns {
         &self.pattern
     }
 
-    /// Writes the entries.
+    /// Evaluates the matrix and writes its entries.
     pub(crate) fn eval(
         &mut self,
         Point { t, y, p }: Point<'_>,

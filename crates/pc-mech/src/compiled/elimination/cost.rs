@@ -1,14 +1,14 @@
-//! The cost of an elimination, from the zeros of the matrix alone.
+//! The cost of an elimination, estimated from the zeros of the matrix alone.
 
 use std::collections::BTreeSet;
 
 use pc_algebra::Matrix;
 use pc_expr::{Expr, Graph};
 
-/// Divisions and multiply-subtracts of a factorisation M = L D Lᵀ that always eliminates the row with the
-/// fewest entries left, fill-in included:
+/// The number of divisions and multiply-subtracts in a factorisation M = L D Lᵀ that always eliminates
+/// the row with the fewest entries left, fill-in included:
 ///
-///   m + m(m + 1)/2   for each row that has m others below it.
+///   m + m(m + 1)/2   for each row that is coupled to m remaining rows.
 ///
 /// A full matrix takes k(k − 1)(k + 4)/6, a tridiagonal one 2(k − 1).
 pub(crate) fn operations(m: &Matrix<Expr<'_>>) -> usize {

@@ -1,4 +1,4 @@
-//! M = L D Lᵀ in numbers, with pivoting where a minor of a regular M vanishes.
+//! The numerical factorisation M = L D Lᵀ, with pivoting where a minor of a regular M vanishes.
 
 use std::mem::MaybeUninit;
 
@@ -13,18 +13,18 @@ use pc_expr::Pattern;
 use crate::compiled::elimination::pivots;
 use crate::compiled::failure::EvaluationFailure;
 
-/// Pivots of complete pivoting this small relative to the largest are rounding.
+/// In complete pivoting, pivots this small relative to the largest are treated as rounding errors.
 const DEPENDENT: f64 = 1e-13;
 
 /// A symmetric k × k matrix and, once it is factorised, L below the diagonal and D on it.
 #[derive(Clone, Debug)]
 pub(crate) struct DenseLdl {
     matrix: Mat<f64>,
-    /// The sizes that pivots are compared with: the diagonal of M unless given.
+    /// The sizes with which pivots are compared: the diagonal of M unless others are given.
     sizes: Vec<f64>,
     pivots: Vec<f64>,
     scratch: Vec<MaybeUninit<u8>>,
-    /// The factors with complete pivoting, if there are none without.
+    /// The factors found with complete pivoting, if elimination without it fails.
     pivoted: Option<Box<FullPivLu<f64>>>,
 }
 
@@ -40,7 +40,8 @@ impl DenseLdl {
         }
     }
 
-    /// Factorises M, given by its `values` at the indices `lower` on and below the diagonal; all are finite.
+    /// Factorises M, given by its `values` at the indices `lower` on and below the diagonal; all must be
+    /// finite.
     ///
     /// # Errors
     /// [`EvaluationFailure::Pivot`] for the first pivot that vanishes.
@@ -52,7 +53,7 @@ impl DenseLdl {
         self.eliminate().or_else(|failure| self.eliminate_pivoted(lower, values, failure))
     }
 
-    /// Factorises M, whose diagonal entries are sums of terms of these sizes.
+    /// Factorises M, whose diagonal entries are sums of terms with the given sizes.
     ///
     /// # Errors
     /// As there.
@@ -74,11 +75,11 @@ impl DenseLdl {
         }
     }
 
-    /// Factorises with complete pivoting: an indefinite matrix may be regular though a leading minor
-    /// vanishes, as ((0, 1), (1, 0)) is.
+    /// Factorises with complete pivoting: an indefinite matrix such as ((0, 1), (1, 0)) may be regular
+    /// though a leading minor vanishes.
     ///
     /// # Errors
-    /// The `failure` that elimination without pivoting met, if M is singular.
+    /// The `failure` of elimination without pivoting, if M is singular.
     #[cold]
     fn eliminate_pivoted(
         &mut self,

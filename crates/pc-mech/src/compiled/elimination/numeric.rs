@@ -1,4 +1,5 @@
-//! First-order systems whose M is factorised in numbers: programs up to the solution for w, and after it.
+//! First-order systems whose M is factorised numerically: programs for the equations of w, and programs that
+//! use its solution.
 
 use pc_algebra::Matrix;
 use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program, SteepFunctions, TimeDependence};
@@ -12,7 +13,7 @@ use crate::compiled::implicit::Newton;
 use crate::compiled::options::CompileOptions;
 use crate::compiled::point::Point;
 
-/// ẏ = g(t, y, w) and its derivatives, with w from M w = r or p(t, y, w) = r.
+/// The compiled ẏ = g(t, y, w) and its derivatives, with w from M w = r or p(t, y, w) = r.
 #[derive(Clone, Debug)]
 pub(crate) struct Staged {
     dim: usize,
@@ -20,7 +21,7 @@ pub(crate) struct Staged {
     multipliers: usize,
     unknowns: Unknowns,
     solver: Solver,
-    /// An alternative for w alone, for a tree with loops; it reports if it is inaccurate.
+    /// An alternative way to find w alone, for a tree with loops; it reports when it is inaccurate.
     schur: Option<Box<Schur>>,
     /// y, then w.
     known: Vec<f64>,
@@ -31,17 +32,18 @@ pub(crate) struct Staged {
     jvp: Option<Product>,
     parameter_jacobian: Option<Stage>,
     time_derivative: Option<Stage>,
-    /// The observables from (t, (y, w)).
+    /// The observables as functions of (t, (y, w)).
     observables: Evaluator,
 }
 
-/// The number of operations of straight-line code that take about as long as one of a factorisation in loops.
+/// The number of operations in straight-line code that take about as long as one operation of a factorisation
+/// in loops.
 pub(crate) const OF_A_LOOP: usize = 4;
 
-/// The equations of w.
+/// The equations that determine w.
 #[derive(Clone, Debug)]
 enum Unknowns {
-    /// M w = r: from (t, y), the nonzero entries of the lower triangle of M, then r.
+    /// M w = r: a program that computes, from (t, y), the nonzero entries of the lower triangle of M, then r.
     Linear { equations: Evaluator, lower: Pattern, values: Vec<f64> },
     /// p(t, y, w) = r
     Implicit(Box<Newton>),
@@ -94,13 +96,13 @@ impl Staged {
         &self.cost
     }
 
-    /// The same system with w from `schur`, where nothing but w is needed.
+    /// The same system, which takes w from `schur` where only w is needed.
     pub(crate) fn by_joints(self, schur: Schur) -> Staged {
         Staged { schur: Some(Box::new(schur)), ..self }
     }
 
-    /// The operations that lead to w, each operation of a factorisation counted as the straight-line code of
-    /// equal duration.
+    /// The number of operations needed to compute w; each operation of a factorisation counts as the
+    /// straight-line operations that take as long.
     pub(crate) fn operations(&self) -> usize {
         let size = self.known.len() - self.dim;
         self.equations().cost().total() + OF_A_LOOP * self.solver.operations(size, self.multipliers)
@@ -114,7 +116,7 @@ impl Staged {
         }
     }
 
-    /// The programs of ẏ.
+    /// The programs that compute ẏ.
     pub(crate) fn programs(&self) -> impl Iterator<Item = &Program> {
         [self.equations(), self.rates.program()].into_iter()
     }
@@ -165,7 +167,7 @@ impl Staged {
         check_finite(ydot, &self.rates, Point { t, y: &self.known, p })
     }
 
-    /// ẏ with each number of M w = r multiplied by the next `factor`.
+    /// Computes ẏ with each number in M w = r multiplied by the next value of `factor`.
     pub(crate) fn perturbed_rhs(
         &mut self,
         Point { t, y, p }: Point<'_>,
@@ -192,7 +194,8 @@ impl Staged {
             state.copy_from_slice(y);
             unknowns.fill(f64::NAN);
         } else if self.solver.takes_spare() {
-            // The reactions of spare constraints and those they replace are not determined separately.
+            // The reactions of spare constraints and of those that they replace are not determined
+            // separately.
             let multipliers = self.known.len() - self.multipliers;
             self.known[multipliers..].fill(f64::NAN);
         }
@@ -245,10 +248,10 @@ impl Staged {
     }
 }
 
-/// ∂ẏ/∂q = ∂g/∂q + ∂g/∂w M⁻¹ ∂F/∂q with F = r − M w or r − p, for symbols q.
+/// The derivatives ∂ẏ/∂q = ∂g/∂q + ∂g/∂w M⁻¹ ∂F/∂q with F = r − M w or r − p, for symbols q.
 #[derive(Clone, Debug)]
 struct Stage {
-    /// From (t, (y, w)): the nonzero entries of ∂F/∂q, of ∂g/∂q, and of ∂g/∂w.
+    /// Computes, from (t, (y, w)), the nonzero entries of ∂F/∂q, of ∂g/∂q, and of ∂g/∂w.
     parts: Evaluator,
     values: Vec<f64>,
     balance: Pattern,
@@ -328,7 +331,7 @@ impl Stage {
     }
 }
 
-/// The number of the irreducible block of M to which each row belongs; the inverse of a block is full.
+/// The index of the irreducible block of M to which each row belongs; the inverse of a block is full.
 fn blocks(m: &Matrix<Expr<'_>>) -> Vec<usize> {
     let k = m.rows();
     let mut block: Vec<usize> = (0..k).collect();
@@ -352,7 +355,7 @@ fn whole(blocks: &[usize], balance: &Pattern, rates: &Pattern, coupling: &Patter
     Pattern::from_columns(rates.rows(), (0..rates.columns()).map(column))
 }
 
-/// (∂ẏ/∂y) v = g′ + ∂g/∂w w′ with w′ = M⁻¹ F′, where ′ is the derivative along v.
+/// The product (∂ẏ/∂y) v = g′ + ∂g/∂w w′ with w′ = M⁻¹ F′, where ′ is the derivative along v.
 #[derive(Clone, Debug)]
 struct Product {
     /// F′ from (t, (y, w, v)).

@@ -8,20 +8,21 @@ use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::failure::EvaluationFailure;
 use crate::compiled::first_order::FirstOrder;
 
-/// A pivot this small relative to its diagonal entry before elimination is rounding.
+/// A pivot this small relative to its diagonal entry before elimination is treated as rounding error.
 const VANISHING_PIVOT: f64 = 1e-14;
 
 /// A diagonal entry this small relative to the largest may be the square of a rounding error, as sin² π is.
 const SQUARE_OF_ROUNDING: f64 = 2.0 * f64::EPSILON * f64::EPSILON;
 
-/// Checks that no pivot vanishes; `sizes` are those of the terms of each one, including its diagonal entry.
+/// Checks that no pivot vanishes; `sizes` gives for each one the size of its terms, including the diagonal
+/// entry.
 ///
-/// Where all pivots have one sign, each is compared with its own entry, independently of units and of the
-/// ratio of masses. Otherwise they are compared with the largest, as a small one makes the others, and their
-/// rounding errors, large.
+/// Where all pivots have the same sign, each is compared with its own diagonal entry, independently of units
+/// and of mass ratios. Otherwise they are compared with the largest, since a small pivot makes the others,
+/// and their rounding errors, large.
 ///
 /// # Errors
-/// [`EvaluationFailure::Pivot`] with the place of the first.
+/// [`EvaluationFailure::Pivot`] with the index of the first that vanishes.
 #[inline]
 pub(crate) fn check(pivots: &[f64], sizes: &[f64]) -> Result<(), EvaluationFailure> {
     let largest = sizes.iter().fold(0.0f64, |largest, size| largest.max(size.abs()));
@@ -48,16 +49,16 @@ fn closely(pivots: &[f64], sizes: &[f64], largest: f64) -> Result<(), Evaluation
     }
 }
 
-/// The pivots, and which of them and of their sizes change with the state. They are counted as one list: the
+/// The layout of the pivots: which of them and of their sizes change with the state. Both form one list: the
 /// pivots, then as many sizes.
 #[derive(Debug)]
 pub(crate) struct PivotPartition {
-    /// The quasi-velocity of each pivot.
+    /// The index of the quasi-velocity of each pivot.
     places: Vec<usize>,
-    /// The places that change with the state, and the number of pivots among them.
+    /// The indices of the numbers that change with the state, and how many of them are pivots.
     moving: Vec<usize>,
     moving_pivots: usize,
-    /// The places that do not.
+    /// The indices of the numbers that do not.
     fixed: Vec<usize>,
 }
 
@@ -72,7 +73,7 @@ impl PivotPartition {
         ALL + self.fixed.len()
     }
 
-    /// How many pivots and sizes change with the state.
+    /// The number of pivots and sizes that change with the state.
     pub(crate) fn moving_len(&self) -> usize {
         self.moving.len()
     }
@@ -80,7 +81,7 @@ impl PivotPartition {
     /// Checks that no pivot vanishes, from the fixed numbers and the values of those that change.
     ///
     /// # Errors
-    /// [`EvaluationFailure::Pivot`] for the first that vanishes.
+    /// [`EvaluationFailure::Pivot`] for the first pivot that vanishes.
     #[inline]
     pub(crate) fn check(
         &self,
@@ -110,8 +111,8 @@ impl PivotPartition {
     }
 }
 
-/// The pivots of M and the sizes they are compared with. Those that depend on parameters alone are computed
-/// once for their values.
+/// The pivots of M and the sizes with which they are compared. Those that depend on parameters alone are
+/// computed once for their values.
 #[derive(Clone, Debug)]
 pub(crate) struct Pivots {
     partition: Arc<PivotPartition>,
@@ -122,7 +123,7 @@ pub(crate) struct Pivots {
 }
 
 impl Pivots {
-    /// The pivots of `factors`, and the expressions whose values [`check`](Pivots::check) takes.
+    /// The pivots of `factors`, and the expressions whose values are passed to [`check`](Pivots::check).
     ///
     /// # Errors
     /// As for [`Program::new`].
@@ -154,7 +155,7 @@ impl Pivots {
         &self.partition
     }
 
-    /// Announces that the parameters may have changed.
+    /// Makes the next check recompute the fixed numbers, since the parameters may have changed.
     pub(crate) fn forget(&mut self) {
         self.is_known = false;
     }
@@ -176,14 +177,14 @@ impl Pivots {
         self.partition.check(|k| self.fixed[k], moving)
     }
 
-    /// The same check for many states at once.
+    /// The numbers with which the same check is made for many states at once.
     pub(crate) fn watched(&mut self, state: &[f64], parameters: &[f64]) -> Watched {
         let fixed = self.fixed(state, parameters);
         let (smallest, largest) = (fixed[SMALLEST], fixed[LARGEST]);
         Watched { pivots: self.partition.moving_pivots, smallest, largest, vanishing: VANISHING_PIVOT }
     }
 
-    /// The fixed numbers.
+    /// The fixed numbers for the given parameters.
     pub(crate) fn fixed(&mut self, state: &[f64], parameters: &[f64]) -> &[f64] {
         if !self.is_known {
             self.fix(state, parameters);

@@ -12,13 +12,13 @@ pub(crate) struct Prologue {
     rest: Evaluator,
     /// The parameters, then the results of the first part.
     numbers: Vec<f64>,
-    /// The places of parameters that may change at each evaluation.
+    /// The indices of parameters that may change at each evaluation.
     varying: Vec<usize>,
     is_known: bool,
 }
 
 impl Prologue {
-    /// The division of a program whose parameters in these places may change at each evaluation; `None` if it
+    /// Divides a program whose parameters with these indices may change at each evaluation; `None` if that
     /// saves next to nothing.
     pub(crate) fn of(program: &Program, varying: &[usize], backend: Backend) -> Option<Prologue> {
         let fixed: Vec<bool> = (0..program.parameters_len()).map(|i| !varying.contains(&i)).collect();
@@ -37,12 +37,12 @@ impl Prologue {
         self.is_known = false;
     }
 
-    /// The places of parameters that may change at each evaluation.
+    /// The indices of parameters that may change at each evaluation.
     pub(crate) fn varying(&self) -> &[usize] {
         &self.varying
     }
 
-    /// The number of parameters and of results of the first part.
+    /// The number of parameters plus the number of results of the first part.
     pub(crate) fn parameters_len(&self) -> usize {
         self.numbers.len()
     }
@@ -74,12 +74,12 @@ impl Prologue {
         self.rest.eval(t, y, &self.numbers, outputs);
     }
 
-    /// The rest, which takes [`numbers`](Prologue::numbers) for parameters.
+    /// The second part, which takes [`numbers`](Prologue::numbers) as its parameters.
     pub(crate) fn rest(&self) -> &Arc<Program> {
         self.rest.program()
     }
 
-    /// The machine code of the rest, which takes [`numbers`](Prologue::numbers) for parameters.
+    /// The machine code of the second part, which takes [`numbers`](Prologue::numbers) as its parameters.
     pub(crate) fn machine_code(&mut self) -> Option<(Entry, usize)> {
         self.rest.machine_code()
     }

@@ -1,14 +1,14 @@
-//! Equations with multipliers in numbers, solved in independent unknowns.
+//! The numerical solution of equations with multipliers, in terms of independent unknowns.
 
 use pc_expr::Pattern;
 
 use crate::compiled::elimination::dense_ldl::DenseLdl;
 use crate::compiled::failure::EvaluationFailure;
 
-/// A pivot of the constraints this small relative to their largest coefficient is rounding.
+/// A pivot of the constraints this small relative to their largest coefficient is treated as rounding error.
 const VANISHING_PIVOT: f64 = 1e-12;
 
-/// A spare row replaces another one if its pivot is larger by a factor of the inverse of this.
+/// A spare row replaces another row if its pivot times this is still larger.
 const SPARE: f64 = 1e-2;
 
 /// The symmetric matrix
@@ -16,24 +16,24 @@ const SPARE: f64 = 1e-2;
 ///   ⎡ M  Cᵀ ⎤
 ///   ⎣ C  0  ⎦
 ///
-/// with M of k rows and C of m, of which r are independent, usually all. C is eliminated first, by the
-/// largest remaining coefficient, so that r unknowns depend on the others, w_D = G w_I + C_D⁻¹ γ, and (1, Gᵀ)
-/// M (1, Gᵀ)ᵀ is factorised. The remaining m − r rows are assumed consistent. The independent unknowns are
-/// chosen anew each time; the solution does not depend on the choice.
+/// where M has k rows and C has m, of which r are independent, usually all. C is eliminated first, always with
+/// the largest remaining coefficient as pivot, so that r unknowns depend on the others, w_D = G w_I + C_D⁻¹ γ,
+/// and (1, Gᵀ) M (1, Gᵀ)ᵀ is factorised. The remaining m − r rows are assumed consistent. The independent
+/// unknowns are chosen anew each time; the solution does not depend on the choice.
 #[derive(Clone, Debug)]
 pub(crate) struct Saddle {
     k: usize,
     m: usize,
     rank: usize,
-    /// M, k × k, row after row.
+    /// The k × k matrix M, row by row.
     mass: Vec<f64>,
-    /// C, m × k, then its factors: L below the diagonal of the pivots and U on it and to the right.
+    /// The m × k matrix C, later its factors: L below the diagonal of the pivots and U on it and to the right.
     constraints: Vec<f64>,
-    /// The constraint at each step of the elimination.
+    /// The index of the constraint eliminated at each step.
     rows: Vec<usize>,
-    /// The unknown at each step, then the independent ones.
+    /// The index of the unknown eliminated at each step, then the independent ones.
     columns: Vec<usize>,
-    /// G = −C_D⁻¹ C_I, r × (k − r), row after row; D and I in the order of `columns`.
+    /// The r × (k − r) matrix G = −C_D⁻¹ C_I, row by row, with D and I in the order of `columns`.
     dependence: Vec<f64>,
     reduced: DenseLdl,
     full: Pattern,
@@ -55,8 +55,8 @@ impl Saddle {
         Saddle::of_rank(k, m, m)
     }
 
-    /// The matrix of k unknowns and m multipliers, `rank` ≤ k of whose rows are independent. The rows after
-    /// the first `rank` are spare: they replace others only where these are nearly dependent.
+    /// The matrix of k unknowns and m multipliers, where `rank` ≤ k rows of the constraints are independent.
+    /// The rows after the first `rank` are spare: they replace others only where those are nearly dependent.
     pub(crate) fn of_rank(k: usize, m: usize, rank: usize) -> Saddle {
         let free = k - rank;
         Saddle {
@@ -79,12 +79,12 @@ impl Saddle {
         }
     }
 
-    /// Factorises the matrix, given by its `values` at the indices `lower` on and below the diagonal; all
-    /// are finite.
+    /// Factorises the matrix, given by its `values` at the indices `lower` on and below the diagonal; all must
+    /// be finite.
     ///
     /// # Errors
-    /// [`EvaluationFailure::Constraint`] with k and the index of the constraint that the others leave nothing
-    /// to restrict; [`EvaluationFailure::Pivot`] with the index of the unknown whose pivot vanishes.
+    /// [`EvaluationFailure::Constraint`] with k plus the index of the constraint whose unknowns the others
+    /// already determine; [`EvaluationFailure::Pivot`] with the index of the unknown whose pivot vanishes.
     pub(crate) fn factorise(&mut self, lower: &Pattern, values: &[f64]) -> Result<(), EvaluationFailure> {
         self.eliminate(lower, values)?;
         self.express_dependent();
@@ -118,7 +118,7 @@ impl Saddle {
         &self.columns[..self.rank]
     }
 
-    /// Whether spare rows replace others.
+    /// Whether some spare rows have replaced others.
     pub(crate) fn takes_spare(&self) -> bool {
         self.rows[..self.rank].iter().any(|&row| row >= self.rank)
     }
@@ -140,9 +140,9 @@ impl Saddle {
         sort_to(columns, &mut found.columns);
     }
 
-    /// C = L U up to the order of rows and columns, with complete pivoting. Coefficients are compared after division by
-    /// the largest of their row and by the square root of the mass of their unknown, so that units do not matter; an
-    /// unknown without mass counts as the lightest of the others.
+    /// Factorises C = L U, up to the order of rows and columns, with complete pivoting. Coefficients are compared after
+    /// division by the largest of their row and by the square root of the mass of their unknown, so that units do not
+    /// matter; an unknown without mass counts as the lightest of the others.
     fn pivot(&mut self) -> Result<(), EvaluationFailure> {
         let (k, m) = (self.k, self.m);
         let (mass, constraints) = (&self.mass, &self.constraints);
@@ -188,7 +188,7 @@ impl Saddle {
         Ok(())
     }
 
-    /// The factors, in the order of the elimination.
+    /// An entry of the factors of C; row and column are numbered in the order of the elimination.
     fn factor(&self, row: usize, column: usize) -> f64 {
         self.constraints[self.rows[row] * self.k + self.columns[column]]
     }
@@ -211,7 +211,8 @@ impl Saddle {
         self.mass[self.columns[row] * self.k + self.columns[column]]
     }
 
-    /// M_II + M_ID G + (M_ID G)ᵀ + Gᵀ M_DD G, its lower triangle column after column, and the sizes of its diagonal.
+    /// Computes the reduced mass M_II + M_ID G + (M_ID G)ᵀ + Gᵀ M_DD G: its lower triangle, column by column, and
+    /// the sizes of its diagonal.
     fn reduce_mass(&mut self) {
         let (m, free) = (self.rank, self.k - self.rank);
         let (mut moved, mut reduced) =
@@ -240,7 +241,7 @@ impl Saddle {
         self.mass(m + i, m + i).abs() + 2.0 * across(m + i) + (0..m).map(|d| g(d) * across(d)).sum::<f64>()
     }
 
-    /// A row of r − M w with the first `known` entries of w, in the order of the elimination.
+    /// One entry of r − M w, computed from the first `known` entries of w in the order of the elimination.
     fn rest(&self, right: &[f64], w: &[f64], row: usize, known: usize) -> f64 {
         right[self.columns[row]] - (0..known).map(|s| self.mass(row, s) * w[s]).sum::<f64>()
     }
@@ -298,14 +299,14 @@ impl Saddle {
     }
 }
 
-/// How far the rows of C are from linear dependence.
+/// A measure of how far the rows of C are from linear dependence.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Independence {
-    /// The pivots of C in their order.
+    /// The pivots of C in the order of the elimination.
     pub(crate) pivots: Vec<Pivot>,
     /// The largest coefficient of each row, in units in which the mass of each unknown is 1.
     pub(crate) row_sizes: Vec<f64>,
-    /// The minor that was eliminated, and its sign.
+    /// The rows and columns of the minor that was eliminated, and its sign.
     pub(crate) rows: Vec<usize>,
     columns: Vec<usize>,
     is_negative: bool,
@@ -323,8 +324,8 @@ pub(crate) struct Pivot {
 }
 
 impl Independence {
-    /// Whether the sign of the minor has changed: then it vanishes in between, or rank is lost there. `None` if
-    /// they are different minors.
+    /// Whether the sign of the minor has changed: then the minor vanishes in between, and rank may be lost.
+    /// `None` if the two minors are different.
     pub(crate) fn is_reversed(&self, later: &Independence) -> Option<bool> {
         let same = self.rows == later.rows && self.columns == later.columns;
         same.then_some(self.is_negative != later.is_negative)
@@ -348,7 +349,7 @@ mod tests {
     use super::*;
     use crate::random::numbers;
 
-    /// M = Nᵀ N + 1 and C, both random, as one symmetric matrix.
+    /// One symmetric matrix made of M = Nᵀ N + 1 and C, both random.
     fn random(k: usize, m: usize, next: &mut impl FnMut() -> f64) -> Vec<Vec<f64>> {
         let n: Vec<f64> = (0..k * k).map(|_| next()).collect();
         let mut whole = vec![vec![0.0; k + m]; k + m];

@@ -1,11 +1,12 @@
-//! Loops of a tree: accelerations of the tree alone, then the forces that close the loops.
+//! Trees with loops: finds the accelerations of the tree alone, then the forces that close the loops.
 //!
-//! With M⁻¹ applied joint after joint, M η̇ = r + Cᵀ λ and C η̇ = γ are
+//! With M⁻¹ applied joint by joint, M η̇ = r + Cᵀ λ and C η̇ = γ are
 //!
 //!   S λ = γ − C a,   η̇ = a + Y λ,   S = C Y,   Y = M⁻¹ Cᵀ,   a = M⁻¹ r,
 //!
-//! which takes O(N c) operations and c³ for c constraints, where the mass matrix bordered by C takes N³. S
-//! squares the condition of C: where one of its pivots is small, the bordered matrix is used instead.
+//! which takes O(N c) operations plus c³ for c constraints, whereas the mass matrix bordered by C takes N³.
+//! S has the square of the condition number of C: where one of its pivots is small, the bordered matrix is
+//! used instead.
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Pattern, Program};
 
@@ -14,17 +15,17 @@ use crate::compiled::elimination::pivots::check;
 use crate::compiled::point::Point;
 use crate::tree::equations::TreeEquations;
 
-/// The remainder of a diagonal entry of S at which digits begin to be lost.
+/// A pivot of S smaller than this fraction of its diagonal entry loses digits.
 const SMALL_PIVOT: f64 = 1e-4;
 
-/// η̇ and λ of a tree with loops.
+/// Solves for η̇ and λ of a tree with loops.
 #[derive(Clone, Debug)]
 pub(crate) struct Schur {
-    /// From (t, y): a, γ − C a, the lower triangle of S column after column, Y, then pivots of M and their
-    /// diagonal entries.
+    /// Computes, from (t, y): a, γ − C a, the lower triangle of S column by column, Y, then the pivots of M
+    /// and its diagonal entries.
     equations: Evaluator,
     values: Vec<f64>,
-    /// The numbers of η̇, of constraints, and of pivots.
+    /// The number of components of η̇, of constraints, and of pivots.
     k: usize,
     m: usize,
     watched: usize,
@@ -33,7 +34,8 @@ pub(crate) struct Schur {
 }
 
 impl Schur {
-    /// The solution for a tree with the rows of C and γ; `None` if a joint has inertia only through a loop.
+    /// The solver for a tree with the given rows of C and γ; `None` if a joint has inertia only through a
+    /// loop.
     ///
     /// # Errors
     /// As for [`Program::new`].
@@ -71,8 +73,8 @@ impl Schur {
         Ok(Some(Schur { equations, values: vec![0.0; outputs.len()], k, m, watched: watched.len(), solved }))
     }
 
-    /// The operations of an evaluation, each operation of a factorisation counted as `of_a_loop` of
-    /// straight-line code.
+    /// The number of operations of an evaluation; each operation of the factorisation counts as `of_a_loop`
+    /// operations of straight-line code.
     pub(crate) fn operations(&self, of_a_loop: usize) -> usize {
         let m = self.m;
         let factors = m * m * m / 6 + 2 * m * m + self.solved.len();
@@ -103,12 +105,12 @@ impl Schur {
     }
 }
 
-/// The start of column b of a lower triangle, diagonal first.
+/// The index at which column b of a lower triangle starts, with its diagonal entry.
 fn column(m: usize, b: usize) -> usize {
     b * m - b * b.saturating_sub(1) / 2
 }
 
-/// S = L D Lᵀ in place: D on the diagonal, L below. False if a pivot is small or NaN.
+/// Factorises S = L D Lᵀ in place: D on the diagonal, L below. False if a pivot is small or NaN.
 fn factorised(s: &mut [f64], m: usize) -> bool {
     for b in 0..m {
         let at = column(m, b);
@@ -129,7 +131,7 @@ fn factorised(s: &mut [f64], m: usize) -> bool {
     true
 }
 
-/// Replaces a right side by the solution.
+/// Replaces a right-hand side by the solution.
 fn solve(s: &[f64], x: &mut [f64]) {
     let m = x.len();
     for b in 0..m {

@@ -1,4 +1,4 @@
-//! The symmetric equations of unknowns and multipliers, in numbers.
+//! The numerical solution of the symmetric equations for unknowns and multipliers.
 
 use pc_expr::Pattern;
 
@@ -6,7 +6,7 @@ use crate::compiled::elimination::dense_ldl::DenseLdl;
 use crate::compiled::elimination::saddle_point::{Independence, Saddle};
 use crate::compiled::failure::EvaluationFailure;
 
-/// A symmetric matrix to be factorised and solved with.
+/// A symmetric matrix, to be factorised and used for solving.
 #[derive(Clone, Debug)]
 pub(crate) enum Solver {
     /// A mass matrix.
@@ -22,7 +22,7 @@ impl Solver {
         Solver::of_rank(size, multipliers, multipliers)
     }
 
-    /// The same for constraints, `rank` of which are independent.
+    /// The same matrix for constraints of which only `rank` are independent.
     pub(crate) fn of_rank(size: usize, multipliers: usize, rank: usize) -> Solver {
         match multipliers {
             0 => Solver::Ldl(DenseLdl::new(size)),
@@ -31,7 +31,7 @@ impl Solver {
     }
 
     /// Factorises the matrix, given by its `values` at the indices `lower` on and below the diagonal; all
-    /// are finite.
+    /// must be finite.
     ///
     /// # Errors
     /// [`EvaluationFailure::Pivot`] with the index of the unknown whose pivot vanishes, or
@@ -43,8 +43,8 @@ impl Solver {
         }
     }
 
-    /// The approximate number of operations to factorise a matrix with this many unknowns and multipliers,
-    /// and to solve with it once.
+    /// The approximate number of operations needed to factorise a matrix with this many unknowns and
+    /// multipliers and to solve with it once.
     pub(crate) fn operations(&self, size: usize, multipliers: usize) -> usize {
         let k = size - multipliers;
         match self {
@@ -59,7 +59,7 @@ impl Solver {
         }
     }
 
-    /// Whether multipliers of spare constraints replace others.
+    /// Whether multipliers of spare constraints have replaced others.
     pub(crate) fn takes_spare(&self) -> bool {
         match self {
             Solver::Ldl(_) => false,

@@ -1,4 +1,5 @@
-//! First-order systems with M⁻¹ written out: every quantity is one straight-line program of (t, y, p).
+//! First-order systems with M⁻¹ written out: every quantity is computed by one straight-line program from
+//! (t, y, p).
 
 use std::cell::LazyCell;
 use std::sync::Arc;
@@ -17,17 +18,17 @@ use crate::compiled::machine_code::MachineCode;
 use crate::compiled::options::CompileOptions;
 use crate::compiled::point::Point;
 
-/// ẏ = g(t, y, M⁻¹ r) and its derivatives.
+/// The compiled ẏ = g(t, y, M⁻¹ r) and its derivatives.
 #[derive(Clone, Debug)]
 pub(crate) struct Unrolled {
     /// Outputs: ẏ, then the pivots and the diagonal entries of M that change with the state.
     rates: Evaluator,
-    /// A faster form of the same, if much depends on parameters alone.
+    /// A faster form of the same program, if much of it depends on parameters alone.
     prologue: Option<Box<Prologue>>,
     outputs: Vec<f64>,
     pivots: Pivots,
     jacobian: Option<Jacobian>,
-    /// (∂ẏ/∂y) v from the state (y, v).
+    /// Computes (∂ẏ/∂y) v from the state (y, v).
     jvp: Option<Evaluator>,
     /// y, v
     known: Vec<f64>,
@@ -35,7 +36,7 @@ pub(crate) struct Unrolled {
     time_derivative: Option<Columns>,
     observables: Evaluator,
     backend: Backend,
-    /// The series of the outputs of `rates`, made on first use.
+    /// The Taylor series of the outputs of `rates`, made on first use.
     series: Option<TaylorSeries>,
     varied: VariedSeries,
 }
@@ -43,10 +44,10 @@ pub(crate) struct Unrolled {
 /// ∂ẏ/∂y
 #[derive(Clone, Debug)]
 enum Jacobian {
-    /// Each entry an expression.
+    /// An expression for each entry.
     Columns(Columns),
-    /// Column after column, as products with unit vectors: for large trees, where each pair of bodies has
-    /// a long entry.
+    /// Column by column, as products with unit vectors: for large trees, where the entry for each pair of
+    /// bodies is long.
     Products(Pattern),
 }
 
@@ -98,7 +99,7 @@ impl Unrolled {
         })
     }
 
-    /// Announces that the parameters may have changed.
+    /// Discards what was computed from the parameters, since they may have changed.
     pub(crate) fn forget(&mut self) {
         self.pivots.forget();
         if let Some(prologue) = &mut self.prologue {
@@ -106,7 +107,7 @@ impl Unrolled {
         }
     }
 
-    /// Adds places of parameters that may change at each evaluation.
+    /// Marks further parameters, by their indices, as able to change at each evaluation.
     pub(crate) fn vary(&mut self, places: &[usize], backend: Backend) {
         if let Some(prologue) = self.prologue.take() {
             let varying = [prologue.varying(), places].concat();
@@ -122,12 +123,12 @@ impl Unrolled {
         }
     }
 
-    /// The operations of ẏ; those of the pivots are not counted.
+    /// The number of operations of ẏ, not counting those of the pivots.
     pub(crate) fn cost(&self, dim: usize) -> Cost {
         self.rates.program().leading(dim).cost()
     }
 
-    /// The programs of ẏ.
+    /// The programs that compute ẏ.
     pub(crate) fn programs(&self) -> impl Iterator<Item = &Program> {
         std::iter::once(&**self.rates.program())
     }
@@ -195,12 +196,12 @@ impl Unrolled {
         Ok(series)
     }
 
-    /// The series of the motion with its derivatives.
+    /// The Taylor series of the motion and of its derivatives.
     pub(crate) fn varied_series(&mut self, columns: &[Option<usize>]) -> &TaylorSeries {
         self.varied.of(columns, self.rates.program(), self.backend)
     }
 
-    /// Expands the motion with its derivatives through the state and its columns at t.
+    /// Expands the motion and its derivatives at t, starting from the state and its columns.
     pub(crate) fn expand_varied(
         &mut self,
         columns: &[Option<usize>],
@@ -215,7 +216,7 @@ impl Unrolled {
         Ok(series)
     }
 
-    /// f for many states at once; `None` if it is interpreted.
+    /// The field f for many states at once; `None` if it is interpreted.
     pub(crate) fn lanes(&mut self, dim: usize, p: &[f64]) -> Option<LaneField> {
         if self.backend != Backend::Fastest {
             return None;
@@ -311,7 +312,8 @@ impl Unrolled {
     }
 }
 
-/// (∂ẏ/∂y) v as a program of the state (y, v): derived forwards along v, without a Jacobian.
+/// A program for (∂ẏ/∂y) v as a function of the state (y, v), by forward differentiation along v, without
+/// a Jacobian.
 fn jvp<'g>(
     system: &FirstOrder<'g>,
     linearised: &Linearised<'_, 'g>,

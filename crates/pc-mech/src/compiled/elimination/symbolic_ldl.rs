@@ -1,4 +1,4 @@
-//! M = L D Lᵀ, unrolled over expressions.
+//! The factorisation M = L D Lᵀ, unrolled into expressions.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
@@ -11,17 +11,18 @@ use crate::tree::equations::TreeEquations;
 
 /// The inverse of a symmetric matrix in the form in which it is applied. Zeros of the matrix cost nothing.
 pub(crate) enum Factors<'g> {
-    /// L D Lᵀ in the order of elimination with least fill-in.
+    /// L D Lᵀ, in an order of elimination chosen for little fill-in.
     Ldl(Ldl<'g>),
     /// The inverse itself: for a small indefinite matrix, such as that of L = ẋẏ, where a pivot may vanish
-    /// though the matrix is regular; for a matrix without a usable pivot on its diagonal; and for one of two
-    /// rows whose determinant is much shorter than its pivots.
+    /// though the matrix is regular; for a matrix without a usable pivot on its diagonal; and for a matrix of
+    /// two rows whose determinant is a much shorter expression than its pivots.
     Inverse(Matrix<Expr<'g>>),
-    /// Elimination joint after joint.
+    /// Elimination joint by joint.
     Tree(Rc<TreeEquations<'g>>),
 }
 
-/// The most rows of an indefinite matrix that is inverted as a whole; the inverse of more is long.
+/// The maximum number of rows of an indefinite matrix that is inverted as a whole; larger inverses are long
+/// expressions.
 const MOST_INVERTED: usize = 3;
 
 /// An expression that vanishes where M is singular, or where its factors are undefined.
@@ -29,18 +30,18 @@ pub(crate) struct Watched<'g> {
     /// The index of the unknown that is undetermined there.
     pub(crate) place: usize,
     pub(crate) pivot: Expr<'g>,
-    /// The scale of its rounding error.
+    /// The scale of the rounding error of `pivot`.
     pub(crate) size: Expr<'g>,
 }
 
-/// L is unit lower triangular in the order of elimination, D diagonal; both indexed as M is.
+/// L D Lᵀ with L unit lower triangular in the order of elimination and D diagonal; both are indexed as M is.
 pub(crate) struct Ldl<'g> {
     order: Vec<usize>,
-    /// The turn at which each row is eliminated.
+    /// The position of each row in the order of elimination.
     turn: Vec<usize>,
     /// The L_iq of each row i that are neither 0 nor on the diagonal, as (q, L_iq).
     rows: Vec<Entries<'g>>,
-    /// The same of each column q, as (i, L_iq).
+    /// The same entries for each column q, as (i, L_iq).
     columns: Vec<Entries<'g>>,
     diagonal: Vec<Expr<'g>>,
 }
@@ -61,8 +62,8 @@ impl<'g> Factors<'g> {
         }
     }
 
-    /// The pivots D with the diagonal entries of M before elimination; or the determinant of an inverted M of
-    /// few rows, with its scale, from the largest entry.
+    /// The pivots D with the diagonal entries of M before elimination; or, if a small M is inverted, its
+    /// determinant with a scale computed from its largest entry.
     pub(crate) fn watched(&self, graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Vec<Watched<'g>> {
         let rows = m.rows();
         match self {
@@ -112,7 +113,7 @@ impl<'g> Factors<'g> {
         }
     }
 
-    /// The nonzero entries of M⁻¹ r with their places, from those of r.
+    /// The nonzero entries of M⁻¹ r with their indices, from those of r.
     pub(crate) fn solve_nonzero(&self, graph: &'g Graph, right: &[(usize, Expr<'g>)]) -> Entries<'g> {
         match self {
             _ if right.is_empty() => Vec::new(),
@@ -134,8 +135,8 @@ impl<'g> Ldl<'g> {
         graph.exact_root(self.diagonal[s]) * graph.sum(below.chain([eta[s]]))
     }
 
-    /// Whether the determinant of two rows is much shorter than the pivots, of which it is the product: for
-    /// a relativistic particle it is a power of the radicand in its Lagrangian.
+    /// Whether the determinant of a matrix of two rows is a much shorter expression than the pivots whose
+    /// product it is: for a relativistic particle it is a power of the radicand in the Lagrangian.
     fn is_longer(&self, graph: &'g Graph, m: &Matrix<Expr<'g>>) -> bool {
         let (2, Some(&last)) = (m.rows(), self.order.last()) else { return false };
         if !graph.know_root_powers(&m.nonzero_entries()) {
@@ -156,9 +157,9 @@ impl<'g> Ldl<'g> {
         })
     }
 
-    /// Eliminates row by row, L_ip = S_ip/S_pp, S_ij ← S_ij − L_ip S_pp L_jp, always a row with the fewest
-    /// entries left, preferably with a symbol as pivot: for example, a wheel before the body that carries
-    /// it. `None` if the remaining diagonal is zero.
+    /// Eliminates row by row, L_ip = S_ip/S_pp, S_ij ← S_ij − L_ip S_pp L_jp, always choosing a row with the
+    /// fewest entries left, preferably one with a symbol as pivot: for example, a wheel before the body that
+    /// carries it. `None` if all remaining diagonal entries are zero.
     fn of(graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Option<Ldl<'g>> {
         let k = m.rows();
         let mut schur: Vec<BTreeMap<usize, Expr<'g>>> = (0..k).map(|i| m.nonzero(i).collect()).collect();
@@ -256,7 +257,8 @@ fn rest<'g>(graph: &'g Graph, r: Expr<'g>, l: &Entries<'g>, z: impl Fn(usize) ->
 mod tests {
     use super::*;
 
-    /// For a chain, an arrow and a ring with a hub, with each unit vector and with a few entries at once.
+    /// Tests the sparsity patterns of a chain, an arrow and a ring with a hub, with each unit vector and with
+    /// a few entries at once.
     #[test]
     fn sparse_right_sides_have_the_full_solution() {
         let graph = Graph::new();

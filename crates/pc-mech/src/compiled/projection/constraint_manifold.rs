@@ -1,4 +1,4 @@
-//! The surface of the states that satisfy constraints, in numbers.
+//! The surface of the states that satisfy constraints, evaluated numerically.
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Inputs, Pattern, Program};
 
@@ -9,49 +9,48 @@ use crate::compiled::point::Point;
 use crate::compiled::projection::followers::Followers;
 use crate::compiled::running_error::Measured;
 
-/// The most steps; those from far away are damped. Near the surface convergence is quadratic and a handful
-/// suffices.
+/// The maximum number of steps; steps from far away are damped. Near the surface convergence is quadratic and a
+/// handful suffices.
 pub(super) const MOST_STEPS: usize = 50;
 
-/// The most halvings of a step before the projection fails.
+/// The maximum number of halvings of a step before the projection fails.
 const HALVINGS: i32 = 20;
 
-/// The ratio of successive steps in quadratic convergence; with a larger one the step is damped, or consists
-/// of rounding.
+/// The largest ratio of successive steps that counts as quadratic convergence; where the ratio is larger, the
+/// step is damped, or is only rounding error.
 const CONVERGING: f64 = 0.25;
 
-/// The residual of f that a single rounding may cause, in units of the bound of all. Moving a state for it
-/// would add noise to the differences from which an integrator predicts the motion.
+/// The residual of f that a single rounding may cause, relative to the bound for all of them. Moving a state to
+/// remove it would add noise to the differences from which an integrator predicts the motion.
 const ONE_ROUNDING: f64 = 0.125;
 
-/// A step that errors of f of this many times their bounds could cause is rounding: f has errors of its own,
-/// and so have the coefficients of the linear equations.
+/// A step that could be caused by errors of f this many times their bounds is treated as rounding error: f has
+/// errors of its own, and so have the coefficients of the linear equations.
 const ROUNDINGS: f64 = 4.0;
 
-/// A step this short relative to the state is rounding if the active constraints determine it a hundred
-/// times worse than others would.
+/// With spare constraints, a step this short relative to the state is treated as rounding error: the active
+/// constraints may determine it a hundred times less accurately than others would.
 const ROUNDING: f64 = 1e-12;
 
-/// A step this short relative to the state is rounding where the error of f has no bound, at an edge of
-/// its domain.
+/// A step this short relative to the state is treated as rounding error where the error of f has no bound, at
+/// an edge of its domain.
 const SHORT: f64 = 1e-8;
 
-/// Storage up to this length is kept ready.
+/// Storage up to this length is allocated in advance.
 const SMALL: usize = 4096;
 
 /// The conditions that define a surface, as expressions in t, x, η and parameters.
 #[derive(Debug)]
 pub(crate) struct Conditions<'a, 'g> {
-    /// f(t, x) for the constraints on positions.
+    /// The functions f(t, x) for the constraints on positions.
     pub(crate) positions: &'a [Expr<'g>],
     /// The index of the constraint of each f.
     pub(crate) places: Vec<usize>,
-    /// g(t, x, η) for each constraint; ḟ = g for those on positions.
+    /// The functions g(t, x, η) for all constraints; ḟ = g for those on positions.
     pub(crate) velocities: &'a [Expr<'g>],
     /// Whether every g is affine in η.
     pub(crate) affine: bool,
-    /// Functions that vanish where the constraints hold, with the names of the constraints that they stand
-    /// for.
+    /// Functions that vanish where the constraints hold, with the names of the constraints that they represent.
     pub(crate) followers: &'a [(String, Expr<'g>)],
     /// b η
     pub(crate) displacements: &'a [Expr<'g>],
@@ -66,8 +65,8 @@ pub(crate) struct Conditions<'a, 'g> {
 
 /// The states (x, η) with f(t, x) = 0 and g(t, x, η) = 0.
 ///
-/// A state is moved there by the shortest way in the kinetic metric: first x by δx = b δπ with δπ in the span
-/// of M⁻¹ ∂f/∂π, then η to the nearest solution.
+/// A state is moved onto the surface by the shortest path in the kinetic metric: first x by δx = b δπ with δπ
+/// in the span of M⁻¹ ∂f/∂π, then η to the nearest solution.
 #[derive(Clone, Debug)]
 pub(crate) struct Surface {
     pub(super) coordinates: usize,
@@ -82,12 +81,12 @@ pub(crate) struct Surface {
     pub(super) lower: Pattern,
     pub(super) bordered: Evaluator,
     pub(super) entries: Vec<f64>,
-    /// The places of the diagonal of the mass matrix among the entries.
+    /// The positions of the diagonal entries of the mass matrix among its nonzero entries.
     diagonal: Vec<Option<usize>>,
-    /// Masses by which steps of the quasi-velocities are measured, all positive.
+    /// Masses with which steps of the quasi-velocities are weighted, all positive.
     pub(super) weights: Vec<f64>,
     solver: Solver,
-    /// The time for which it is factorised.
+    /// The time for which the matrix is factorised.
     factorised: f64,
     /// A right-hand side, then a solution.
     pub(super) change: Vec<f64>,
@@ -95,7 +94,7 @@ pub(crate) struct Surface {
     pub(super) displaced: Vec<f64>,
     room: Room,
     pub(super) spans: Spans,
-    /// The velocities to which the nearest solution is sought.
+    /// The velocities nearest to which a solution is sought.
     pub(super) given: Vec<f64>,
     /// Whether g is affine in η, so that one step leads to the nearest solution.
     pub(crate) affine: bool,
@@ -109,7 +108,7 @@ struct Room {
     errors: Vec<f64>,
 }
 
-/// Storage for the constraints by rows at both ends of a step, and for the products of these rows.
+/// Storage for the rows of the constraints at both ends of a step, and for the products of these rows.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Spans {
     pub(super) before: Vec<f64>,
@@ -118,7 +117,7 @@ pub(super) struct Spans {
 }
 
 impl Spans {
-    /// Storage for m constraints on k unknowns; if there are many, it grows when needed.
+    /// Storage for m constraints on k unknowns; if there are many, it grows on demand.
     fn of(m: usize, k: usize) -> Spans {
         let room = |len: usize| if len <= SMALL { vec![0.0; len] } else { Vec::new() };
         Spans { before: room(m * k), later: room(m * k), products: room(m * m) }
@@ -220,8 +219,8 @@ impl Surface {
         Ok(())
     }
 
-    /// Writes how far the constraints are from losing rank at the end (t, y) of a step: if it was projected last, this is
-    /// already known. False if there are none.
+    /// Writes how far the constraints are from losing rank at the end (t, y) of a step: if this state was the last to be
+    /// projected, that is already known. False if there are none.
     pub(crate) fn independence_to(
         &mut self,
         (t, y): (f64, &[f64]),
@@ -234,7 +233,7 @@ impl Surface {
         Ok(self.solver.independence_to(found))
     }
 
-    /// The same at any state.
+    /// How far the constraints are from losing rank, at any state.
     pub(crate) fn independence_at(
         &mut self,
         t: f64,
@@ -246,7 +245,8 @@ impl Surface {
         Ok(self.solver.independence_to(&mut found).then_some(found))
     }
 
-    /// Takes the weights from the diagonal of the mass matrix; what has no mass weighs as little as the lightest.
+    /// Takes the weights from the diagonal of the mass matrix; a component without mass gets the smallest weight
+    /// of the others.
     pub(super) fn weigh(&mut self) {
         let masses =
             || self.diagonal.iter().map(|place| place.map_or(0.0, |place| self.entries[place].abs()));
@@ -256,13 +256,12 @@ impl Surface {
         self.weights.iter_mut().zip(weights).for_each(|(weight, mass)| *weight = mass);
     }
 
-    /// Newton's method for f(t, x) = 0 or for g(t, x, η) = 0, which ends after one step where g is affine in
+    /// Solves f(t, x) = 0 or g(t, x, η) = 0 by Newton's method, which ends after one step where g is affine in
     /// η; the matrix stays factorised at the end point.
     ///
-    /// Steps are measured as δπ, in the metric of the diagonal of M, and so independently of the units of f.
-    /// A state is on the surface where f is within the bound of its rounding errors, where a step changes no
-    /// digit, or where a step is no longer than such errors would cause: then one more full step is the last
-    /// improvement.
+    /// Steps are measured by δπ, in the metric given by the diagonal of M, and so independently of the units of
+    /// f. A state is on the surface where f is within the bound of its rounding errors, where a step changes no
+    /// digit, or where a step is no longer than such errors would make it: then one last full step is taken.
     pub(super) fn project_part(
         &mut self,
         part: Part,
@@ -297,8 +296,8 @@ impl Surface {
             start.clear();
             start.extend_from_slice(&y[range.clone()]);
             self.move_by(part, Point { t, y, p }, change);
-            // Constraints that depend on the active ones hold within the rounding of those, not within their
-            // own.
+            // Constraints that depend on the active ones hold within the rounding errors of the latter, not
+            // within their own.
             let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
             let has_spare = self.rank < self.velocities.values().len();
             if has_spare && largest(change) <= ROUNDING * largest(start) {
@@ -397,7 +396,7 @@ impl Surface {
         components().fold(0.0, f64::hypot)
     }
 
-    /// Computes the change of x or of η by the step into `moved`.
+    /// Writes the change in x or in η that the step causes to `moved`.
     pub(super) fn move_by(&mut self, part: Part, Point { t, y, p }: Point<'_>, moved: &mut Vec<f64>) {
         let (n, k) = (self.coordinates, self.k);
         moved.clear();

@@ -1,4 +1,4 @@
-//! Whether constraints hold where they lose rank.
+//! Decides whether constraints hold where they lose rank.
 
 use pc_algebra::Matrix;
 
@@ -10,16 +10,17 @@ use crate::compiled::projection::constraint_manifold::{Spans, Surface};
 use crate::compiled::projection::nearest::dot;
 use crate::numeric::singular_values::SingularValues;
 
-/// The residual that rounding may cause, in units of the bounds of all of them.
+/// The residual that rounding may cause, as a multiple of the combined bounds of the constraints.
 const ROUNDINGS: f64 = 2.0;
 
-/// If a singular value of the constraints, whose rows had length 1, has fallen to this fraction, the rank is lost.
+/// If a singular value of the constraints, with rows scaled to length 1, has fallen to this fraction, the rank is
+/// lost.
 const FALLEN: f64 = 0.2;
 
 impl Surface {
     /// Whether the constraints on positions hold at a state near which they lose rank, in the combinations u, uᵀ C ≈ 0,
-    /// that restrict nothing there: then surfaces cross at that place. Otherwise one of two sheets passes by it, and the
-    /// residual uᵀ f is the gap between them. `before` is a state at which the rank is still full.
+    /// that restrict nothing there: then surfaces cross near this state. Otherwise two sheets pass each other there, and
+    /// the residual uᵀ f is the gap between them. `before` is a state at which the rank is still full.
     pub(crate) fn crosses(&mut self, at: Point<'_>, before: Point<'_>) -> Result<bool, EvaluationFailure> {
         let rows = self.rows(before)?;
         let lengths: Vec<f64> = (0..rows.rows()).map(|a| length(&rows.row(a))).collect();
@@ -47,8 +48,9 @@ impl Surface {
         Ok(true)
     }
 
-    /// Whether the space that the independent constraints span has the other orientation at the later state: it turns
-    /// by less than a right angle from one to the other unless rank is lost in between, det C C'ᵀ > 0.
+    /// Whether the space spanned by the independent constraints has the opposite orientation at the later state. The
+    /// space turns by less than a right angle between the two states, so that det C C'ᵀ > 0, unless rank is lost in
+    /// between.
     pub(crate) fn is_reversed(
         &mut self,
         (before, from): (&Independence, Point<'_>),
@@ -63,7 +65,7 @@ impl Surface {
         Ok(orientation? <= 0.0)
     }
 
-    /// det C C'ᵀ of these rows.
+    /// The determinant det C C'ᵀ of these rows.
     fn orientation(
         &mut self,
         Spans { before, later, products }: &mut Spans,
@@ -81,14 +83,14 @@ impl Surface {
         Ok(determinant(products, independent.len()))
     }
 
-    /// C by rows, with each unknown in units in which its mass is 1.
+    /// The rows of C, with each unknown in units in which its mass is 1.
     fn rows(&mut self, at: Point<'_>) -> Result<Matrix<f64>, EvaluationFailure> {
         let mut rows = Vec::new();
         self.write_rows(at, &mut rows)?;
         Ok(Matrix::from_fn(rows.len() / self.k, self.k, |a, s| rows[a * self.k + s]))
     }
 
-    /// Writes these rows, one after the other.
+    /// Writes the rows of C, one after the other.
     fn write_rows(&mut self, at: Point<'_>, rows: &mut Vec<f64>) -> Result<(), EvaluationFailure> {
         let k = self.k;
         rows.clear();

@@ -1,19 +1,19 @@
-//! Conditions that follow from the constraints, checked during a projection.
+//! Conditions that follow from the constraints and are checked during a projection.
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Program};
 
 use crate::compiled::failure::EvaluationFailure;
 
-/// The greatest error of a derived condition, as a displacement of a component of the state, absolute or
-/// relative, whichever is larger: constraints hold to rounding, and this is a hundred times the tolerance of
-/// a start.
+/// The greatest error allowed in a derived condition, as a displacement of a component of the state,
+/// absolute or relative, whichever is larger. Constraints hold up to rounding errors, and this is a hundred
+/// times the tolerance for an initial state.
 const OFF: f64 = 1e-6;
 
-/// Functions of the state that vanish where the constraints hold, each standing for a constraint.
+/// Functions of the state that vanish where the constraints hold, each representing a constraint.
 #[derive(Clone, Debug)]
 pub(crate) struct Followers {
     names: Vec<String>,
-    /// Each function, then its derivatives with respect to the components of the state.
+    /// Computes each function, followed by its derivatives with respect to the components of the state.
     functions: Evaluator,
     values: Vec<f64>,
     state: usize,
@@ -41,7 +41,7 @@ impl Followers {
         })
     }
 
-    /// Checks that all vanish at a state.
+    /// Checks that all functions vanish at a state.
     ///
     /// # Errors
     /// [`EvaluationFailure::Departed`] for the first that does not vanish.

@@ -7,13 +7,13 @@ use crate::compiled::point::Point;
 use crate::compiled::projection::constraint_manifold::{MOST_STEPS, Part, Surface};
 use crate::numeric::least_squares::LeastSquares;
 
-/// A combination of rows this small relative to them is rounding.
+/// A combination of rows this small relative to the rows is treated as rounding error.
 pub(super) const DEPENDENT: f64 = 1e-12;
 
-/// The same bound near places where constraints become dependent.
+/// The same bound near states where constraints become dependent.
 pub(super) const NEARLY_DEPENDENT: f64 = 1e-7;
 
-/// A step this short relative to the state is rounding.
+/// A step this short relative to the state is treated as rounding error.
 const SHORT: f64 = 1e-13;
 
 /// The components of a state (x, η) that stay unchanged, by their indices among the x and among the η.
@@ -31,7 +31,7 @@ impl Surface {
     ///
     /// # Errors
     /// [`EvaluationFailure::NoProjection`] if no step leads closer; [`EvaluationFailure::Constraint`] for a
-    /// constraint on held components alone.
+    /// constraint that involves held components alone.
     pub(crate) fn project_holding(
         &mut self,
         (t, y, p): (f64, &mut [f64], &[f64]),
@@ -101,8 +101,8 @@ impl Surface {
         held.iter().map(|&held| (0..self.k).map(|s| f64::from(u8::from(s == held))).collect()).collect()
     }
 
-    /// The δ of least ½ δᵀ M δ that solves the linearised conditions of a part and leaves `fixed` · δ = 0,
-    /// from
+    /// The δ with the least ½ δᵀ M δ that solves the linearised conditions for a part and satisfies `fixed` ·
+    /// δ = 0, from
     ///
     ///   M δ + Aᵀ μ = 0,   A δ = α,
     ///

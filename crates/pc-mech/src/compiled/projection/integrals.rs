@@ -1,4 +1,4 @@
-//! First integrals that a motion keeps.
+//! First integrals that a motion keeps constant.
 
 use pc_algebra::{discontinuities, may_jump};
 use pc_expr::{Backend, Evaluator, Expr, Program};
@@ -9,27 +9,27 @@ use crate::compiled::point::Point;
 use crate::compiled::running_error::Measured;
 use crate::error::{IntegralError, MechError};
 
-/// The most steps; Newton's method converges quadratically, or fails.
+/// The maximum number of steps; Newton's method converges quadratically, or fails.
 const MOST_STEPS: usize = 50;
 
-/// A step this short relative to the state is the last: the next would be rounding.
+/// A step this short relative to the state is the last: the next would be rounding error.
 const SHORT: f64 = 1e-8;
 
-/// Rounding errors in the value of an integral, in units of its gradient and its value.
+/// The rounding error of an integral without a bound, in units of the rounding of its terms and of its value.
 const ROUNDINGS: f64 = 4.0;
 
-/// A gradient with less than this fraction independent of those before it adds nothing.
+/// A gradient is left out if less than this fraction of it is independent of those before it.
 const DEPENDENT: f64 = 1e-10;
 
-/// First integrals I_j(t, y) of a motion, compiled with their gradients, to keep it at their values: see
-/// [`Motion::keep`](crate::Motion::keep).
+/// First integrals I_j(t, y) of a motion, compiled with their gradients, to keep the motion at their values:
+/// see [`Motion::keep`](crate::Motion::keep).
 #[derive(Clone, Debug)]
 pub struct KeptIntegrals {
     /// The names of the integrals.
     pub(super) names: Vec<String>,
-    /// The constraints, if there are any, which are kept at the same time, then the integrals.
+    /// The constraints that have to hold at the same time, if there are any, then the integrals.
     values: Measured,
-    /// ∂I_j/∂t, then ∂I_j/∂y_i for each i, one after the other.
+    /// Computes ∂I_j/∂t, then ∂I_j/∂y_i for each i, one integral after the other.
     gradients: Evaluator,
     /// Zeros for the constraints, then the values of the integrals at the start.
     levels: Vec<f64>,
@@ -48,7 +48,7 @@ pub(crate) struct Room {
 }
 
 impl<'g> FirstOrder<'g> {
-    /// The integrals of these names, kept while `held` vanish.
+    /// The integrals with these names, to be kept while the constraints `held` vanish.
     pub(super) fn kept<S: AsRef<str>>(
         &self,
         names: &[S],
@@ -93,11 +93,11 @@ impl<'g> FirstOrder<'g> {
         self.quaternions.places().iter().map(norm).collect()
     }
 
-    /// Checks that an integral does not jump along the motion, since its values beyond a jump would belong to other
-    /// states. The energy of a Lagrangian that does not jump is tested at the surfaces where it changes pieces; other
-    /// integrals must have no such surfaces.
+    /// Checks that an integral does not jump along the motion, since a value kept across a jump would belong to other
+    /// states. The energy of a Lagrangian that does not jump is tested at the surfaces where the Lagrangian changes
+    /// from one piece to another; other integrals must have no such surfaces.
     fn check_without_jumps(&self, name: &str, integral: Expr<'g>) -> Result<(), MechError> {
-        // A state whose rate is zero changes by events alone, which begin the motion anew with the values after them.
+        // A state whose rate is zero changes only at events, which restart the motion with the values after them.
         let flowing = self.state.iter().zip(&self.rates).filter(|(_, rate)| !rate.is_zero());
         let flowing: Vec<Expr<'g>> = flowing.map(|(&symbol, _)| symbol).collect();
         let changing = [&[self.time], &self.varying[..], &self.unknowns[..], &flowing[..]].concat();
@@ -124,7 +124,7 @@ impl KeptIntegrals {
         self.room.entries.chunks_exact(at.y.len() + 1).skip(held).map(along).collect()
     }
 
-    /// Takes the values at (t, y) as those to keep.
+    /// Makes the values at (t, y) those to be kept.
     pub(crate) fn set_levels(&mut self, at: Point<'_>) {
         let held = self.held();
         self.levels.copy_from_slice(self.values.eval(at));
@@ -141,7 +141,7 @@ impl KeptIntegrals {
         self.gradients.eval(t, y, p, &mut self.room.entries);
     }
 
-    /// Newton's method for I(t, y) = I_0, each step the shortest.
+    /// Projects to I(t, y) = I_0 by Newton's method, each step being the shortest possible.
     ///
     /// # Errors
     /// [`EvaluationFailure::NotKept`] if the steps do not become shorter, [`EvaluationFailure::Expr`] for
@@ -172,7 +172,7 @@ impl KeptIntegrals {
     }
 
     /// Computes into `change` the shortest δ with ∂I_j/∂y · δ = I_j − I_j0, by orthogonalising the gradients
-    /// one after the other. A difference that is rounding of the terms of I_j changes nothing: near an
+    /// one after the other. A difference within the rounding errors of the terms of I_j is ignored: near an
     /// equilibrium it would cause a large step.
     fn find_shortest(&mut self, at: Point<'_>) -> Result<(), EvaluationFailure> {
         self.find_gradients(at);

@@ -1,4 +1,4 @@
-//! Motions that keep first integrals.
+//! Motions that keep first integrals constant.
 
 use crate::compiled::motion::Motion;
 use crate::compiled::point::Point;
@@ -9,13 +9,14 @@ use crate::equations::poincare::Equations;
 use crate::error::{IntegralError, MechError};
 use pc_expr::VectorField;
 
-/// A rate of change counts above this fraction of the size of its terms, which is far above rounding.
+/// A rate of change counts as nonzero above this fraction of the size of its terms, which is far above rounding
+/// errors.
 const RATE: f64 = 1e-9;
 
-/// A rate is itself rounding if it changes by more than this fraction when rounded digits change.
+/// A rate is itself a rounding error if it changes by more than this fraction when the last digits change.
 const UNCERTAIN: f64 = 1.0 / 64.0;
 
-/// The number of such changes of digits, and their size.
+/// The number of such changes to the last digits, and their size.
 const PROBES: u64 = 8;
 const LAST_DIGITS: f64 = 8.0 * f64::EPSILON;
 
@@ -25,7 +26,7 @@ const STEPS: usize = 8;
 const FIRST_STEP: f64 = 1e-4;
 
 impl<'g> Equations<'g> {
-    /// The integrals of these names, or `energy`, to be [kept](Motion::keep).
+    /// The integrals with these names, or `energy`, to be [kept](Motion::keep).
     ///
     /// # Errors
     /// [`IntegralError::Unknown`].
@@ -35,7 +36,7 @@ impl<'g> Equations<'g> {
 }
 
 impl<'g> Canonical<'g> {
-    /// The integrals of these names, or `energy`, as functions of (t, x, y), to be [kept](Motion::keep).
+    /// The integrals with these names, or `energy`, as functions of (t, x, y), to be [kept](Motion::keep).
     ///
     /// # Errors
     /// [`IntegralError::Unknown`]; [`LagrangianError::NotQuadratic`](crate::LagrangianError::NotQuadratic) where η is
@@ -52,7 +53,7 @@ impl<'g> Canonical<'g> {
 }
 
 impl<'g> Multipliers<'g> {
-    /// The integrals of these names, or `energy`, to be [kept](Motion::keep) beside the constraints.
+    /// The integrals with these names, or `energy`, to be [kept](Motion::keep) together with the constraints.
     ///
     /// # Errors
     /// [`IntegralError::Unknown`].
@@ -62,12 +63,13 @@ impl<'g> Multipliers<'g> {
 }
 
 impl Motion {
-    /// The same motion with a [projection](pc_expr::VectorField::project) to the values of these integrals at
-    /// (t, y), after that to its constraints: the shortest path in the components of the state. Applied after
-    /// each step, it changes the state by at most the error of the step.
+    /// The same motion with a further [projection](pc_expr::VectorField::project), after that to its
+    /// constraints: to the values of these integrals at (t, y), by the shortest path in the components of the
+    /// state. Applied after each step, it changes the state by at most the error of the step.
     ///
-    /// An integral whose gradient depends on those before it, such as the energy at rest, is not kept there.
-    /// A quantity that may jump along the motion is refused: keeping it would change the motion.
+    /// An integral is not kept at states where its gradient is linearly dependent on those before it, such as
+    /// the energy at rest. A quantity that may jump along the motion is refused: keeping it would change the
+    /// motion.
     ///
     /// # Errors
     /// [`IntegralError::NotAnIntegral`] if one of them changes along the motion at (t, y) or a little later;
@@ -99,8 +101,8 @@ impl Motion {
         Ok(self)
     }
 
-    /// Makes the values at (t, y) those to be [kept](Motion::keep) from now on: at another start, or with
-    /// other parameters.
+    /// Makes the values at (t, y) those to be [kept](Motion::keep) from now on: for another initial state, or
+    /// with other parameters.
     ///
     /// # Errors
     /// As for [`keep`](Motion::keep).
@@ -120,14 +122,14 @@ impl Motion {
     fn try_to_keep(&mut self, integrals: &mut KeptIntegrals, t: f64, y: &[f64]) -> Result<(), MechError> {
         let rates = self.rates(t, y)?;
         self.check(integrals, t, y, &rates)?;
-        // At rest many quantities that change have no rate yet: a few short steps show it.
+        // At rest many quantities that will change have no rate yet; a few short steps show that they change.
         let largest = |values: &[f64]| values.iter().fold(0.0f64, |size, x| size.max(x.abs()));
         let (mut now, mut state) = (t, y.to_vec());
         let mut step = FIRST_STEP * largest(y).max(1.0) / largest(&rates).max(1.0);
         for _ in 0..STEPS {
             let Ok(next) = self.runge_kutta(now, &state, step) else { break };
             (now, state) = (now + step, next);
-            // Off the constraints, reactions do work.
+            // Where the constraints do not hold, reactions do work.
             if self.project(now, &mut state).is_err() {
                 break;
             }
@@ -157,8 +159,8 @@ impl Motion {
         Ok(())
     }
 
-    /// Whether the rate of change of an integral at (t, y) is rounding of ẏ: it changes with the last digits
-    /// of the state and of the equations. Those changes are the same on every run.
+    /// Whether the rate of change of an integral at (t, y) is due to rounding errors in ẏ: it then changes with
+    /// the last digits of the state and of the equations. Those changes are the same on every run.
     fn is_uncertain(
         &mut self,
         integrals: &mut KeptIntegrals,
@@ -181,7 +183,7 @@ impl Motion {
         })
     }
 
-    /// The motion projected to its constraints alone.
+    /// The same motion, projected to its constraints alone.
     pub fn without_kept(mut self) -> Motion {
         self.set_kept(None);
         self

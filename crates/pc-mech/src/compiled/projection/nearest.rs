@@ -1,4 +1,4 @@
-//! The nearest velocities that satisfy constraints nonlinear in them.
+//! Finds the nearest velocities that satisfy constraints nonlinear in the velocities.
 
 use pc_algebra::Matrix;
 
@@ -8,20 +8,21 @@ use crate::compiled::projection::constraint_manifold::{MOST_STEPS, Part, Surface
 use crate::compiled::projection::holding::{DEPENDENT, NEARLY_DEPENDENT};
 use crate::numeric::least_squares::LeastSquares;
 
-/// The square of a displacement this short relative to the velocities is rounding, and with it the
-/// error of Newton's steps.
+/// The square of a displacement this short relative to the velocities is within rounding error, and so
+/// is the error of Newton's steps.
 const SHORT: f64 = 1e-8;
 
-/// A step this short is the last for the nearest point: its square, the remaining error, is rounding.
+/// A step this short is the last towards the nearest point: its square, the remaining error, is within
+/// rounding error.
 const LAST: f64 = 1e-7;
 
-/// A displacement this short relative to the velocities is rounding of the linear equations.
+/// A displacement this short relative to the velocities is a rounding error of the linear equations.
 const ROUNDING: f64 = 1e-14;
 
-/// The most halvings of a step before its direction is given up.
+/// The maximum number of halvings of a step before its direction is given up.
 const HALVINGS: i32 = 20;
 
-/// M and C = ∂g/∂η by rows.
+/// The matrices M and C = ∂g/∂η, row by row.
 pub(super) struct Coefficients {
     pub(super) mass: Vec<Vec<f64>>,
     pub(super) constraints: Vec<Vec<f64>>,
@@ -58,12 +59,12 @@ impl Surface {
         self.coordinates..self.coordinates + self.k
     }
 
-    /// Moves η along g = 0, from the end of Newton's method, to where
+    /// Moves η along g = 0, from the result of Newton's method, to where
     ///
     ///   M (η − η₀) = Cᵀ μ.
     ///
-    /// Each step to g = 0 is the shortest, but not all of them together, and their path depends on the
-    /// quasi-velocities. Where g is affine in η the single step is the answer.
+    /// Each step to g = 0 is the shortest, but the steps together are not, and their path depends on
+    /// the choice of quasi-velocities. Where g is affine in η a single step leads to the nearest point.
     fn approach(
         &mut self,
         given: &[f64],
@@ -118,13 +119,13 @@ impl Surface {
         self.speed(a.iter().zip(b).map(|(a, b)| a - b)) > part * self.speed(a.iter().copied())
     }
 
-    /// The root of twice the kinetic energy, with the diagonal of M.
+    /// The square root of twice the kinetic energy, computed with the diagonal of M.
     fn speed(&self, eta: impl Iterator<Item = f64>) -> f64 {
         eta.zip(&self.weights).map(|(eta, weight)| eta * weight.sqrt()).fold(0.0, f64::hypot)
     }
 
-    /// Along g = 0: the step of Newton's method to the nearest point, and the steepest direction to it;
-    /// both zero at that point.
+    /// Two steps along g = 0: that of Newton's method to the nearest point, and the steepest direction
+    /// towards it; both are zero at that point.
     ///
     ///   (M − ∂(Cᵀμ)/∂η) δ + Cᵀ ν = −M z,   C δ = 0,   where   M z + Cᵀ μ = M (η − η₀),   C z = 0.
     fn tangents(
@@ -162,7 +163,8 @@ impl Surface {
         Ok((newton, z.iter().map(|z| -z).collect()))
     }
 
-    /// δ and ν of H δ + Cᵀ ν = r, C δ = 0, in units in which masses and the rows of C are one.
+    /// Solves H δ + Cᵀ ν = r, C δ = 0 for δ and ν, in units in which masses and the lengths of the rows
+    /// of C are one.
     fn along(
         &self,
         h: &[Vec<f64>],
@@ -188,7 +190,7 @@ impl Surface {
         Ok((step, multipliers.iter().zip(&lengths).map(|(mu, length)| mu / length).collect()))
     }
 
-    /// M and C at a state.
+    /// The matrices M and C at a state.
     pub(super) fn coefficients(
         &mut self,
         Point { t, y, p }: Point<'_>,

@@ -8,17 +8,17 @@ use crate::system::system::System;
 /// the differences from which an integrator predicts the motion.
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
-/// The places of quaternions in a state; each has |q| = 1.
+/// The positions of quaternions in a state; each has |q| = 1.
 ///
-/// The frame of a joint keeps |q|, but an integrator only to its tolerance, and if |q| is not 1, the quaternion is not a
-/// rotation.
+/// The equations of a joint keep |q| constant, but an integrator does so only to its tolerance, and a quaternion whose
+/// |q| is not 1 is not a rotation.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct UnitQuaternions {
     places: Vec<[usize; 4]>,
 }
 
 impl UnitQuaternions {
-    /// Those of a system, whose coordinates come first in its state.
+    /// The quaternions of a system, whose coordinates come first in its state.
     pub(crate) fn of(system: &System<'_>) -> UnitQuaternions {
         let x = system.frame.coordinates();
         let place = |component: &Expr<'_>| x.iter().position(|x| x == component);
@@ -37,8 +37,8 @@ impl UnitQuaternions {
         &self.places
     }
 
-    /// Replaces each q by q/|q|; returns whether that changes any. A zero quaternion is left to the equations, which
-    /// have no values there.
+    /// Replaces each q by q/|q|; returns whether any q changes. A zero quaternion is left unchanged: the equations
+    /// are undefined there.
     #[inline]
     pub(crate) fn normalise(&self, y: &mut [f64]) -> bool {
         let mut changed = false;

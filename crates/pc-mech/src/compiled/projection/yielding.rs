@@ -1,4 +1,4 @@
-//! Velocities on constraints, of which some keep their values as far as the constraints allow.
+//! Velocities that satisfy the constraints, some of which keep their values as far as the constraints allow.
 
 use pc_algebra::Matrix;
 
@@ -10,7 +10,7 @@ use crate::compiled::projection::nearest::{Coefficients, dot};
 use crate::error::MechError;
 use crate::numeric::least_squares::LeastSquares;
 
-/// A step this short relative to the velocities is rounding.
+/// A step this short relative to the velocities is treated as rounding error.
 const SHORT: f64 = 1e-14;
 
 impl Surface {
@@ -38,7 +38,7 @@ impl Surface {
             let step = self.least_change(&coefficients, held)?;
             let eta = &mut y[moving.clone()];
             eta.iter_mut().zip(&step).for_each(|(eta, step)| *eta += step);
-            // Where g is affine one step leads there, and those after it correct its rounding.
+            // Where g is affine one step leads there, and further steps correct its rounding errors.
             let length = largest(&step);
             if length <= SHORT * largest(eta) || (self.affine && length >= last) {
                 return Ok(());
@@ -48,11 +48,13 @@ impl Surface {
         Err(EvaluationFailure::NoProjection { unknowns: self.k })
     }
 
-    /// The step for the current g, in units in which masses are one. With H the held indices and F the others,
+    /// The step for the current g, in units in which masses are one. If H are the held indices and F the
+    /// others,
     ///
     ///   N C_H δ_H = −N g,   C_F δ_F = −g − C_H δ_H,
     ///
-    /// where N is the projection to what C_F does not reach: the conditions on held velocities alone.
+    /// where N is the projection to the combinations of constraints that C_F does not affect: the conditions on
+    /// held velocities alone.
     fn least_change(
         &mut self,
         Coefficients { mass, constraints }: &Coefficients,
@@ -75,11 +77,11 @@ impl Surface {
             Matrix::from_fn(rows.len(), columns.len(), entry)
         };
 
-        // Rows of C have length one, so that such entries are rounding.
+        // Rows of C have length one, so such entries are rounding errors.
         let beside = |entry: f64| if entry.abs() <= DEPENDENT { 0.0 } else { entry };
         let of_free = Matrix::from_fn(m, free.len(), |a, f| beside(of(a, free[f])));
         let reached = LeastSquares::of(&of_free).map_err(failed)?;
-        // N v, without its rounding.
+        // N v, without its rounding errors.
         let beyond = |v: &[f64], size: f64| -> Vec<f64> {
             let nearest = reached.shortest(v, tolerance);
             let rest = v.iter().enumerate().map(|(a, v)| v - dot(&of_free.row(a), &nearest));
@@ -105,11 +107,11 @@ impl Surface {
     }
 }
 
-/// Among the δ that solve A δ = α best, the one with the least ½ δᵀ M δ − pᵀ δ,
+/// Among the δ that come closest to solving A δ = α, the one with the least ½ δᵀ M δ − pᵀ δ,
 ///
 ///   M δ + Aᵀ μ = p,   A δ = α,
 ///
-/// with the rows of A taken as of length one.
+/// with the rows of A scaled to length one.
 fn shortest(
     mass: &Matrix<f64>,
     pull: &[f64],

@@ -1,4 +1,4 @@
-//! Particles and rigid bodies alike.
+//! A body of either kind.
 
 use pc_expr::{Expr, Graph};
 
@@ -27,7 +27,7 @@ impl<'g> Body<'g> {
         }
     }
 
-    /// m g · r, the term of L in a field of gravity.
+    /// The term m g · r of L in a gravitational field.
     ///
     /// # Errors
     /// [`ShapeError`](crate::ShapeError)
@@ -40,7 +40,7 @@ impl<'g> Body<'g> {
         Ok(mass * graph.dot(acceleration.iter().copied(), position.iter().copied()))
     }
 
-    /// The name it was given.
+    /// The name that the body was given.
     pub(crate) fn name(&self) -> Option<&str> {
         match self {
             Body::Particle(particle) => particle.name(),

@@ -9,21 +9,21 @@ use crate::system::states::check_no_state;
 /// The contribution of a body to a system.
 #[derive(Clone, Debug)]
 pub(crate) struct Share<'g> {
-    /// T in terms of (t, x, η).
+    /// The kinetic energy T in terms of (t, x, η).
     pub(crate) kinetic: Expr<'g>,
-    /// Q_1..Q_k, without those that follow from the force function.
+    /// The forces Q_1..Q_k, without those that follow from the force function.
     pub(crate) forces: Vec<Expr<'g>>,
-    /// U(t, x), which is a term of L.
+    /// The force function U(t, x), which is a term of L.
     pub(crate) force_function: Expr<'g>,
-    /// The components of the force from which U follows.
+    /// Whether each component of the force is included in U.
     pub(crate) in_lagrangian: Vec<bool>,
     /// ṙ
     pub(crate) velocity: Vec<Expr<'g>>,
-    /// ω, if the body turns.
+    /// The angular velocity ω, if the body turns.
     pub(crate) angular_velocity: Option<Vec<Expr<'g>>>,
 }
 
-/// A frame with its quasi-velocities, and the symbols x' of its velocities.
+/// A frame with its quasi-velocities and the symbols x' of its velocities.
 pub(crate) struct Moving<'a, 'g> {
     pub(crate) frame: &'a Frame<'g>,
     pub(crate) eta: &'a [Expr<'g>],
@@ -44,16 +44,16 @@ impl<'a, 'g> Moving<'a, 'g> {
         Moving { frame, eta, states, velocities: velocities.collect() }
     }
 
-    /// Functions of (t, x, η) and ẋ in terms of (t, x, η).
+    /// Expresses functions of (t, x, η) and ẋ in terms of (t, x, η).
     pub(crate) fn in_quasi_velocities(&self, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
         self.frame.graph().substitute(functions, &self.velocities)
     }
 
-    /// X_s f for each function f of (t, x), s = 0..k.
+    /// The derivatives X_s f of each function f of (t, x), s = 0..k.
     ///
     /// # Errors
-    /// [`BodyError::OfVelocities`] if they depend on velocities, [`FrameError::OfState`](crate::FrameError::OfState) if
-    /// on first-order states; `what` is their name.
+    /// [`BodyError::OfVelocities`] if the functions depend on velocities,
+    /// [`FrameError::OfState`](crate::FrameError::OfState) if they depend on first-order states; `what` is their name.
     pub(crate) fn operators(
         &self,
         what: &'static str,
@@ -75,7 +75,7 @@ impl<'a, 'g> Moving<'a, 'g> {
         }
     }
 
-    /// u_0 + η_s u_s, component by component, for the vectors u_0..u_k.
+    /// The vector u_0 + η_s u_s, component by component, for the vectors u_0..u_k.
     pub(crate) fn combine(&self, vectors: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
         let graph = self.frame.graph();
         let weights = || std::iter::once(Expr::ONE).chain(self.eta.iter().copied());
@@ -83,7 +83,7 @@ impl<'a, 'g> Moving<'a, 'g> {
         (0..components).map(|i| graph.dot(vectors.iter().map(|u| u[i]), weights())).collect()
     }
 
-    /// f · u_s for s = 1..k, for the vectors u_0..u_k.
+    /// The products f · u_s, s = 1..k, for the vectors u_0..u_k.
     pub(crate) fn work(&self, f: &[Expr<'g>], vectors: &[Vec<Expr<'g>>]) -> Vec<Expr<'g>> {
         let graph = self.frame.graph();
         vectors[1..].iter().map(|u| graph.dot(f.iter().copied(), u.iter().copied())).collect()

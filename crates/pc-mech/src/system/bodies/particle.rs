@@ -5,12 +5,14 @@ use pc_expr::{Expr, Number};
 use crate::error::{MechError, shape};
 use crate::system::bodies::moving::{Moving, Share};
 
-/// A mass point m at the place r(t, x), given by its one, two or three Cartesian components in an inertial frame.
+/// A point mass m at the position r(t, x), given by its one, two or three Cartesian components in an inertial
+/// frame.
 ///
 /// Its velocity is ṙ = X_0 r + η_s X_s r, its kinetic energy ½ m |ṙ|². A force F on it, with components along
-/// the same axes, gives Q_s = F · X_s r (8); it may depend on (t, x, η), and on ẋ by the symbols `x'`. A
+/// the same axes, gives Q_s = F · X_s r (8); it may depend on (t, x, η), and on ẋ through the symbols `x'`. A
 /// force that depends on the position alone, is homogeneous in r and has a force function, F · X_s r = X_s U,
-/// counts in the energy: U is added to L, and nothing to Q_s. So does a single component with this property.
+/// contributes to the energy: U is added to L, and nothing to Q_s. The same holds for a single component with
+/// this property.
 ///
 /// ```
 /// use pc_mech::{Graph, Particle, System};
@@ -48,13 +50,14 @@ impl<'g> Particle<'g> {
         Particle { mass: mass.into(), position, force: None, name: None }
     }
 
-    /// The same particle with the force F on it, of as many components as the position.
+    /// The same particle with the force F on it, which has as many components as the position.
     #[must_use]
     pub fn force(self, force: impl IntoIterator<Item = impl Into<Expr<'g>>>) -> Particle<'g> {
         Particle { force: Some(force.into_iter().map(Into::into).collect()), ..self }
     }
 
-    /// The same particle with a name, by which its [reactions](crate::Multipliers::body_reactions) are known.
+    /// The same particle with a name, under which its [reactions](crate::Multipliers::body_reactions) are
+    /// listed.
     #[must_use]
     pub fn named(self, name: impl Into<String>) -> Particle<'g> {
         Particle { name: Some(name.into()), ..self }
@@ -102,8 +105,8 @@ impl<'g> Particle<'g> {
         Ok(Share { kinetic, forces, force_function, in_lagrangian, velocity, angular_velocity: None })
     }
 
-    /// U(t, x) with F · X_s r = X_s U, for a force that depends on the place alone. If F is homogeneous of
-    /// degree d in r, as constant forces, springs and gravitation are, U = F · r/(d + 1) by Euler's theorem:
+    /// The U(t, x) for which F · X_s r = X_s U, if the force depends on the position alone. If F is homogeneous
+    /// of degree d in r, as are constant forces, springs and gravitation, U = F · r/(d + 1) by Euler's theorem:
     /// where F · X_s r is the same multiple of X_s (F · r) for all s, its 1-form is exact.
     fn force_function(
         &self,
@@ -117,7 +120,7 @@ impl<'g> Particle<'g> {
             return None;
         }
         let product = graph.dot(force.iter().copied(), self.position.iter().copied());
-        // For a uniform force this needs no test, which rounding in the frame could fail.
+        // A uniform force needs no such test, which could fail because of rounding errors in the frame.
         if !force.iter().any(|f| moving.frame.coordinates().iter().any(|&x| f.depends_on(x))) {
             return Some(product);
         }
@@ -136,7 +139,7 @@ impl<'g> Particle<'g> {
     }
 }
 
-/// The nearest multiple of 1/12 to a quotient with rounding errors, such as one of coefficients with √2;
+/// The multiple of 1/12 that a quotient with rounding errors, such as one of coefficients with √2, stands for;
 /// for the usual degrees d, 1/(d + 1) is such a multiple. Any other number is returned unchanged.
 fn simple(quotient: Number) -> Number {
     let twelfths = (12.0 * quotient.to_f64()).round();

@@ -7,11 +7,11 @@ use crate::error::{BodyError, MechError, shape};
 use crate::system::bodies::moving::{Moving, Share};
 use crate::system::bodies::particle::Particle;
 
-/// A rigid body: mass m, place r(t, x), inertia I, and how it turns.
+/// A rigid body: its mass m, position r(t, x), inertia I, and rotation.
 ///
-/// Its kinetic energy is ½ m |ṙ|² + ½ ω·Iω (König). That is right if r is the **mass centre** and I is taken
-/// about it, and also if r is any point of the body that is **at rest** (as the fixed point of a top) and I
-/// is taken about that point. For any other point r the energy has the further term m ṙ·(ω × s), s from r to
+/// Its kinetic energy is ½ m |ṙ|² + ½ ω·Iω (König). That is correct if r is the **mass centre** and I is taken
+/// about it, and also if r is any point of the body that is **at rest** (as the fixed point of a top) and I is
+/// taken about that point. For any other point r the energy has the further term m ṙ·(ω × s), with s from r to
 /// the mass centre, which is not supported: give the mass centre.
 ///
 /// The angular velocity ω has components along axes in which I is constant, in general axes fixed in the body. It
@@ -49,7 +49,7 @@ pub struct RigidBody<'g> {
 /// A symmetric inertia matrix.
 ///
 /// Made of three principal moments `[Ixx, Iyy, Izz]`, or of six entries `[Ixx, Iyy, Izz, Ixy, Iyz, Ixz]`. The latter
-/// are entries of the matrix: Ixy = −∫ xy dm.
+/// are the entries of the matrix: Ixy = −∫ xy dm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inertia<'g>([Expr<'g>; 6]);
 
@@ -67,7 +67,7 @@ impl<'g, E: Into<Expr<'g>>> From<[E; 6]> for Inertia<'g> {
 }
 
 impl<'g> Inertia<'g> {
-    /// The matrix with each entry replaced.
+    /// The matrix with each entry replaced by `put` of it.
     pub(crate) fn map<'n>(&self, put: impl Fn(Expr<'g>) -> Expr<'n>) -> Inertia<'n> {
         Inertia(self.0.map(put))
     }
@@ -90,9 +90,9 @@ impl<'g> Inertia<'g> {
 
 #[derive(Clone, Debug)]
 enum Orientation<'g> {
-    /// R, from body axes to axes in space, 3 × 3.
+    /// The 3 × 3 matrix R from body axes to axes in space.
     Rotation(Matrix<Expr<'g>>),
-    /// ω in terms of (t, x, η) or ẋ.
+    /// The angular velocity ω in terms of (t, x, η) or ẋ.
     AngularVelocity([Expr<'g>; 3]),
 }
 
@@ -100,10 +100,11 @@ impl<'g> RigidBody<'g> {
     /// A body whose attitude is the 3 × 3 matrix R(t, x) from body axes to axes in space: ω̂ = RᵀṘ, along body axes.
     ///
     /// R may be a multiple of a rotation matrix, such as the |q|² R of a quaternion off the unit sphere: ω̂ is the
-    /// antisymmetric part of RᵀṘ divided by ⅓ tr RᵀR, in which a factor cancels. Among the matrices of groups, those
-    /// of [`UnitQuaternions`](crate::UnitQuaternions) and [`EulerAngles`](crate::EulerAngles) are such multiples
-    /// everywhere. A matrix of nine coordinates R_ij is one on SO(3) only, and gives a long energy: it is better to
-    /// [give](RigidBody::turning) ω by the quasi-velocities.
+    /// antisymmetric part of RᵀṘ divided by ⅓ tr RᵀR, in which the factor cancels. Among the matrices of Lie groups
+    /// in this crate, those of [`UnitQuaternions`](crate::UnitQuaternions) and [`EulerAngles`](crate::EulerAngles)
+    /// are such multiples everywhere. A matrix of nine coordinates R_ij is a rotation only on SO(3), and gives a
+    /// long expression for the energy: it is better to [give](RigidBody::turning) ω in terms of the
+    /// quasi-velocities.
     pub fn rotating(
         mass: impl Into<Expr<'g>>,
         position: impl IntoIterator<Item = impl Into<Expr<'g>>>,
@@ -133,7 +134,7 @@ impl<'g> RigidBody<'g> {
         }
     }
 
-    /// The same body with the force F at its position, of as many components as this.
+    /// The same body with the force F at its position, which has as many components as the position.
     #[must_use]
     pub fn force(self, force: impl IntoIterator<Item = impl Into<Expr<'g>>>) -> RigidBody<'g> {
         RigidBody { centre: self.centre.force(force), ..self }
@@ -145,7 +146,7 @@ impl<'g> RigidBody<'g> {
         RigidBody { torque: Some(torque.map(Into::into)), ..self }
     }
 
-    /// The same body with a name, by which its [reactions](crate::Multipliers::body_reactions) are known.
+    /// The same body with a name, under which its [reactions](crate::Multipliers::body_reactions) are listed.
     #[must_use]
     pub fn named(self, name: impl Into<String>) -> RigidBody<'g> {
         RigidBody { centre: self.centre.named(name), ..self }
@@ -180,7 +181,7 @@ impl<'g> RigidBody<'g> {
     }
 }
 
-/// ω_0..ω_k with ω = ω_0 + η_s ω_s, from the antisymmetric parts of Rᵀ X_s R.
+/// The vectors ω_0..ω_k in ω = ω_0 + η_s ω_s, from the antisymmetric parts of Rᵀ X_s R.
 fn angular_velocities<'g>(
     rotation: &Matrix<Expr<'g>>,
     moving: &Moving<'_, 'g>,
@@ -203,8 +204,8 @@ fn angular_velocities<'g>(
     Ok(rates.into_iter().map(angular).collect())
 }
 
-/// Whether RᵀR is a multiple of the unit matrix and R is not a reflection. Where n > k this may hold only
-/// on the surface of the motion, which is unknown here.
+/// Checks that RᵀR is a multiple of the unit matrix and that R is not a reflection. Where n > k this may hold
+/// only on the surface that contains the motion, which is unknown here.
 fn check_rotation<'g>(rotation: &Matrix<Expr<'g>>, moving: &Moving<'_, 'g>) -> Result<(), MechError> {
     if moving.frame.coordinates().len() > moving.frame.operators() {
         return Ok(());

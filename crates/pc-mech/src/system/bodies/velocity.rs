@@ -1,4 +1,4 @@
-//! The velocities of bodies, kept with the system that they move with.
+//! The velocities of bodies, stored with the system to which they belong.
 
 use pc_expr::Expr;
 
@@ -13,23 +13,23 @@ pub struct BodyVelocity<'g> {
 }
 
 impl<'g> BodyVelocity<'g> {
-    /// The name it was given, else `body` and its number.
+    /// The name that the body was given, or else `body` and its number.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// ṙ(t, x, η), along the axes of its position.
+    /// The velocity ṙ(t, x, η), along the axes of the position.
     pub fn velocity(&self) -> &[Expr<'g>] {
         &self.velocity
     }
 
-    /// ω(t, x, η), along the axes of its inertia; none for a particle.
+    /// The angular velocity ω(t, x, η), along the axes of the inertia; none for a particle.
     pub fn angular_velocity(&self) -> Option<&[Expr<'g>]> {
         self.angular_velocity.as_deref()
     }
 
-    /// For each component of the force on it, whether its force function is a term of L; nothing for a body
-    /// without a force or for one on a joint.
+    /// For each component of the force on it, whether its force function is a term of L; empty for a body
+    /// without a force and for a body on a joint.
     pub fn force_in_lagrangian(&self) -> &[bool] {
         &self.in_lagrangian
     }
@@ -39,12 +39,12 @@ impl<'g> BodyVelocity<'g> {
 #[derive(Clone, Debug)]
 pub(crate) struct Bodies<'g> {
     pub(crate) list: Vec<BodyVelocity<'g>>,
-    /// L without the kinetic energy of the bodies.
+    /// The Lagrangian L without the kinetic energy of the bodies.
     pub(crate) rest: Expr<'g>,
 }
 
 impl<'g> Bodies<'g> {
-    /// The same with `put` applied to every expression, as to the Lagrangian.
+    /// The same bodies with `put` applied to every expression, as it is to the Lagrangian.
     pub(crate) fn map<'n>(&self, put: impl Fn(&[Expr<'g>]) -> Vec<Expr<'n>>) -> Bodies<'n> {
         let moved = |body: &BodyVelocity<'g>| BodyVelocity {
             name: body.name.clone(),
