@@ -4,7 +4,7 @@ use rustc_hash::FxHashMap;
 
 use crate::graph::node::NodeId;
 
-/// A set of more divisors counts as the set of all divisors.
+/// A set of more divisors than this counts as the set of all divisors.
 const MOST: usize = 64;
 
 /// A set of divisors, by its index.
@@ -17,7 +17,7 @@ impl Divisors {
     pub(super) const ALL: Divisors = Divisors(u32::MAX);
 }
 
-/// The sets that occur, each kept once.
+/// The sets that occur, each stored once.
 #[derive(Debug)]
 pub(crate) struct DivisorSets {
     sets: Vec<Vec<NodeId>>,

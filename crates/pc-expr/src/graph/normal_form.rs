@@ -1,7 +1,7 @@
 //! The rules by which sums and products are normalised as they are built.
 //!
 //! A sum is a linear combination c + Σ qᵢ nᵢ with rational coefficients, a product a power product Π nᵢ^eᵢ with
-//! integer exponents; rational factors of products live in the sum around them.
+//! integer exponents; rational factors of products are kept in the sum around them.
 
 use crate::graph::dag::Dag;
 use crate::graph::function::Function;
@@ -15,7 +15,7 @@ const MERGED_TERMS: usize = 24;
 const MERGED_FACTORS: usize = 64;
 /// Nested sums below one operand are opened up to this many terms, products likewise.
 const GATHERED: usize = 1024;
-/// Larger integer powers stay calls of `pow`.
+/// Integer powers larger than this stay calls of `pow`.
 pub(super) const MAX_EXPONENT: u32 = 1 << 16;
 
 impl Dag {
@@ -86,7 +86,7 @@ impl Dag {
         }
     }
 
-    /// q·n of a node that is not itself a number times a node.
+    /// q·n for a node n that is not itself a number times a node.
     fn scaled(&mut self, q: Number, node: NodeId) -> Atom {
         if q.is_one() {
             return Atom::Node(node);
@@ -271,7 +271,7 @@ impl Dag {
         }
     }
 
-    /// x/y; a divisor that is identically zero is remembered, and the quotient undefined.
+    /// x/y; if the divisor is identically zero, this is recorded, and the quotient is undefined.
     pub(crate) fn divide(&mut self, x: Atom, y: Atom) -> Atom {
         if y.is_zero() {
             self.zero_divisions.push(x);

@@ -1,4 +1,5 @@
-//! Constants: exact rationals while they stay small or are small times a power of ten, rounded reals beyond.
+//! Constants: exact rationals as long as they are small, or small times a power of ten; rounded reals
+//! otherwise.
 
 use std::fmt;
 use std::hash::{Hash, Hasher};
@@ -6,14 +7,15 @@ use std::hash::{Hash, Hasher};
 use crate::identity::fingerprint::Fingerprint;
 use crate::identity::prime_field::Residue;
 
-/// Largest numerator and denominator kept exactly: both, and so their quotient, are then correctly rounded in f64.
+/// Largest numerator and denominator kept exactly: both are then exact in f64, and so their quotient is correctly
+/// rounded.
 const EXACT: i128 = 1 << 53;
 
 /// A constant of the graph.
 ///
-/// An `f64` given to the graph counts as the decimal number it prints as, so that `0.1 + 0.2` is 3/10 and like terms cancel exactly,
-/// also with powers of units such as 10⁻⁹. Results that are neither a small rational nor one times a power of ten are rounded to
-/// `f64`.
+/// An `f64` given to the graph counts as the decimal number that it is printed as, so that `0.1 + 0.2` is 3/10 and like terms cancel
+/// exactly, even with powers of units such as 10⁻⁹. Results that are neither a small rational nor a small rational times a power of
+/// ten are rounded to `f64`.
 #[derive(Clone, Copy, Debug)]
 pub enum Number {
     /// `num / den` in lowest terms, `den > 0`, both at most 2⁵³ in size.
@@ -37,8 +39,8 @@ pub enum Number {
     Real(f64),
 }
 
-/// The most digits of a number that is meant as a decimal. A number with more digits is the rounded result of
-/// a computation.
+/// The maximum number of digits of a number that is taken to be meant as a decimal. A number with more digits
+/// is taken to be the rounded result of a computation.
 const DIGITS: usize = 15;
 
 impl Number {
@@ -106,7 +108,7 @@ impl Number {
         }
     }
 
-    /// The value at the random point of each of two prime fields: that of the number itself.
+    /// The value of the number in each of two prime fields; it does not depend on the random points there.
     pub(crate) fn fingerprint(self) -> Fingerprint {
         match self {
             Number::Rational { num, den: 1 } => Fingerprint::integer(num),
@@ -407,7 +409,7 @@ impl Hash for Number {
 }
 
 impl fmt::Display for Number {
-    /// Small fractions as such (`-1/3`), other rationals as decimals if they terminate.
+    /// Writes small fractions as such (`-1/3`), and other rationals as decimals if these terminate.
     ///
     /// Very large and very small numbers are written with an exponent.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -24,8 +24,8 @@ struct LinearTerm {
     m: i32,
 }
 
-/// An expression as a product of powers, each of a factor that is nonnegative wherever the root or logarithm
-/// of the whole is real, and of a remaining factor of unknown sign.
+/// An expression as a product: powers of factors that are nonnegative wherever the root or logarithm of the
+/// whole is real, and a remaining factor of unknown sign.
 struct PowerProduct {
     known: Vec<(Value, i32)>,
     rest: Option<Value>,
