@@ -114,7 +114,7 @@ impl Graph {
         (products.len() <= MOST_PRODUCTS).then_some(products)
     }
 
-    /// Functions that may have to be combined for the integral of a product over z.
+    /// Candidate functions: the integral of a product over z may be a combination of these.
     fn integrals<'g>(&'g self, product: &Product<'g>, z: Expr<'g>) -> Vec<Expr<'g>> {
         let mut collected: Product<'g> = Vec::new();
         for &(factor, power) in product {

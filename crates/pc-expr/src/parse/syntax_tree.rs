@@ -1,4 +1,4 @@
-//! The syntax tree of an expression, with the place of each part in the text.
+//! The syntax tree of an expression, with the position of each part in the text.
 
 /// Greatest nesting of parentheses, calls, exponents and unary minuses in one expression.
 pub const MAX_DEPTH: usize = 200;
@@ -12,7 +12,7 @@ pub struct Span {
     pub end: usize,
 }
 
-/// An expression as written, with its place in the text; parentheses around it belong to the span.
+/// An expression as written, with its position in the text; parentheses around it belong to the span.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ast {
     /// Its place.

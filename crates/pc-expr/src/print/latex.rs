@@ -44,8 +44,8 @@ fn letters(text: &str) -> String {
     format!("\\mathrm{{{spelt}}}")
 }
 
-/// A character as itself in mathematics mode: names of reactions contain those of constraints, which may be
-/// any text.
+/// The code that prints a character as itself in mathematics mode: names of reactions contain those of
+/// constraints, which may be any text.
 fn character(c: char) -> String {
     match c {
         '_' | '{' | '}' | '$' | '%' | '&' | '#' => format!("\\{c}"),

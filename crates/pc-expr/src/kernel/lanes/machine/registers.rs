@@ -15,7 +15,7 @@ pub(super) struct Registers {
     /// The value in each register.
     owner: Vec<Option<u32>>,
     locked: u32,
-    /// The register of each value, and its place in memory.
+    /// The register of each value, and where it is in memory.
     place: Vec<Option<Vector>>,
     home: Vec<Option<Home>>,
     /// The lines that read each value, and how many of them have passed.
@@ -175,8 +175,8 @@ impl Registers {
         assembler.load(vector, home)
     }
 
-    /// A value as the last operand of an instruction: in memory, unless it is in a register or read
-    /// again soon.
+    /// A value as the last operand of an instruction: read from memory, unless it is in a register or
+    /// is read again soon.
     pub(super) fn last(
         &mut self,
         value: u32,
@@ -190,7 +190,7 @@ impl Registers {
         }
     }
 
-    /// Notes that a value is in a register.
+    /// Records that a value is in a register.
     pub(super) fn put(&mut self, value: u32, vector: Vector) {
         self.owner[usize::from(vector)] = Some(value);
         self.place[value as usize] = Some(vector);
