@@ -161,7 +161,7 @@ impl Graph {
         z: Expr<'g>,
         whole: bool,
     ) -> impl Iterator<Item = Expr<'g>> + 'g {
-        // A form with a vanishing denominator or another value is passed over for the next point.
+        // A form with a vanishing denominator or another value is skipped, and the next point is tried.
         let oblique = [Number::ratio(3, 5), Number::ratio(4, 5)];
         [
             (Number::ZERO, [Number::ZERO, Number::ONE]),

@@ -308,7 +308,7 @@ fn decimal(value: f64) -> Option<Number> {
     let fraction_digits = mantissa.split_once('.').map_or(0, |(_, fraction)| fraction.len() as i32);
     let digits: i64 = mantissa.replace('.', "").parse().ok()?;
     let number = Number::exact(digits.into(), 1, exponent.parse::<i32>().ok()? - fraction_digits)?;
-    // Of the size of a rounding error of 1, it may be one.
+    // A number of the size of a rounding error of 1 may be one.
     let is_meant = || {
         digits.unsigned_abs().to_string().len() <= DIGITS
             && !(f64::EPSILON / 16.0..f64::EPSILON * 64.0).contains(&value.abs())

@@ -286,7 +286,7 @@ impl Roots {
             terms.iter().flat_map(|&(m, _)| self.monomials[m.0 as usize].iter().map(|&(r, _)| r)).collect();
         roots.sort_unstable();
         roots.dedup();
-        // The youngest: the square of no other one holds it.
+        // The youngest root: it does not occur in the square of any other.
         let Some(&youngest) = roots.last() else { return plain };
         if roots.len() > MOST_CONJUGATES || self.roots[youngest as usize].order != 2 {
             return plain;

@@ -156,7 +156,7 @@ impl RootSeparation {
                 if a != first {
                     places.push(a);
                 }
-                // What is not told apart may be one touch in many intervals.
+                // Roots that are not separated may be one touch of zero that spans many intervals.
                 (run, roots) = (b, roots + usize::from(single));
                 vague += usize::from(!single);
             }
