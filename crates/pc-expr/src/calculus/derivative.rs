@@ -1,8 +1,8 @@
 //! Derivatives: reverse sweeps for gradients, forward sweeps along a direction.
 //!
-//! For `step`, min and max only the branch that is taken counts. The other one may have no value or no slope
-//! there, and 0 times that would be NaN. A branch that is not defined everywhere is therefore differentiated
-//! separately, and the choice is made between the derivatives.
+//! For `step`, min and max only the branch that is taken counts. The other branch may have no value or no
+//! slope there, and 0 times that would be NaN. A branch that is not defined everywhere is therefore
+//! differentiated separately, and the choice is made between the derivatives.
 
 use rustc_hash::FxHashMap;
 
@@ -107,8 +107,8 @@ impl Dag {
         Some(Choice { condition, branches })
     }
 
-    /// An expression that is not negative where the first argument is the value of the minimum, or of the
-    /// maximum; at a tie it is the first argument, whose node is older.
+    /// An expression that is not negative where the minimum, or the maximum, is the first argument; a tie
+    /// goes to the first argument, whose node is older.
     fn lead(&mut self, function: Function, [first, second]: [NodeId; 2]) -> Atom {
         let q = if function == Function::Min { Number::ONE } else { Number::MINUS_ONE };
         self.sum(Number::ZERO, &[(second, q), (first, -q)])

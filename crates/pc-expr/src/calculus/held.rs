@@ -15,7 +15,7 @@ use crate::graph::subgraph::Cone;
 pub struct Held<'g> {
     /// The expressions, with pieces chosen by the sides.
     pub values: Vec<Expr<'g>>,
-    /// The surfaces, each with its side; a surface contains only the sides of preceding ones.
+    /// The surfaces, each with its side; a surface contains only the sides of preceding surfaces.
     pub surfaces: Vec<Surface<'g>>,
 }
 

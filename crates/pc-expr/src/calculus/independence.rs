@@ -219,7 +219,7 @@ impl Graph {
         repeated.into_iter().map(|node| self.expr(Atom::Node(node))).collect()
     }
 
-    /// e with sin z and cos z as given, and z itself if there is a `value`.
+    /// e with sin z and cos z replaced as given, and with z itself replaced if there is a `value`.
     fn at_point<'g>(
         &'g self,
         e: Expr<'g>,
@@ -238,7 +238,7 @@ impl Graph {
         self.trial(e, &replacements)
     }
 
-    /// e at a value of the symbol z.
+    /// e at this value of the symbol z.
     fn at<'g>(&'g self, e: Expr<'g>, z: Expr<'g>, value: Number) -> Expr<'g> {
         self.trial(e, &[(z.symbol_in(self), Atom::Constant(value))])
     }

@@ -2,8 +2,8 @@
 //!
 //! Fingerprints treat rounded constants as exact. The components of a unit vector, each rounded, have
 //! squares whose sum is not quite 1, so that the terms they multiply do not seem to cancel. Numerical
-//! values decide: a sum that is left over by rounding is small relative to its terms at every point; a sum
-//! whose value is genuinely small is as large as its terms.
+//! values decide: a sum that is left over by rounding is small relative to its terms at every point; a
+//! genuinely small value is about as large as the terms of its sum.
 
 use crate::graph::evaluate::Scalar;
 use crate::graph::expr::Expr;

@@ -10,7 +10,7 @@ use crate::graph::subgraph::Cone;
 impl Graph {
     /// Functions at whose zeros finite values may jump: those at which `step`, `sign`, `abs`, `min`, `max`,
     /// `atan2` and roots of squares change to another piece, and the divisors below functions that bound a pole, as in
-    /// atan(1/x). Most often values do not jump there: abs(x) does not, x/abs(x) does.
+    /// atan(1/x). In most cases the values do not jump there: abs(x) does not, x/abs(x) does.
     ///
     /// ```
     /// # use pc_expr::Graph;

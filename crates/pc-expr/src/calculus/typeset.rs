@@ -1,4 +1,4 @@
-//! Expressions as a book prints them: short to read, whatever they cost to compute.
+//! Expressions as a book prints them: short to read, whatever the cost of computing them.
 //!
 //! Sums are rewritten from the inside outwards by identities that hold wherever both sides have values: cos a
 //! cos b + sin a sin b is cos(a − b), p/d + q/d is (p + q)/d, and common factors are taken out of sums.

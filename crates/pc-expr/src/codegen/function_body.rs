@@ -61,8 +61,8 @@ impl Piece {
         self.terms[0].starts_with('-')
     }
 
-    /// The text for the right of an operator, where it cannot begin with a sign, and the depth of its
-    /// brackets.
+    /// The text for use to the right of an operator, where it cannot begin with a sign, and the depth
+    /// of its brackets.
     fn right(&self, least: Binding) -> (String, u32) {
         if self.binding >= least && !self.is_negative() {
             (self.text(), self.depth)
@@ -71,7 +71,7 @@ impl Piece {
         }
     }
 
-    /// The text for the beginning of an expression, and the depth of its brackets.
+    /// The text for use at the beginning of an expression, and the depth of its brackets.
     fn left(&self, least: Binding) -> (String, u32) {
         if self.binding >= least { (self.text(), self.depth) } else { self.bracketed() }
     }
@@ -317,7 +317,7 @@ impl<'a> Printer<'a> {
         named
     }
 
-    /// Declares a local for a value.
+    /// Declares a local variable for a value.
     fn named(&mut self, register: usize, instruction: Instruction, piece: &Piece) -> Piece {
         let name = self.local(register, instruction);
         let head = match self.language {

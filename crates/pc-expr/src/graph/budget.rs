@@ -33,7 +33,7 @@ impl Budget {
         Budget(Arc::new(Meter::new(self.0.limits.clone(), self.0.deadline.clone())))
     }
 
-    /// The limits it was made with.
+    /// The limits with which it was made.
     pub fn limits(&self) -> &Limits {
         &self.0.limits
     }
@@ -59,9 +59,9 @@ impl Default for Budget {
     }
 }
 
-/// The bytes of a node, with its values and its entries in tables.
+/// The number of bytes of a node, including its values and its entries in tables.
 const NODE: usize = 256;
-/// The bytes of an operand of a sum or product, or of a term of a value with roots.
+/// The number of bytes of an operand of a sum or product, or of a term of a value with roots.
 const OPERAND: usize = 64;
 
 /// The remainder of a budget, shared by graphs that work together.

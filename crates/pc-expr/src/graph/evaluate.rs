@@ -1,4 +1,5 @@
-//! Evaluation of the graph itself over any scalar: the reference that programs and derivatives are tested against.
+//! Evaluation of the graph itself over any scalar: the reference against which programs and derivatives are
+//! tested.
 
 use std::ops::{Add, Mul, Neg};
 

@@ -139,7 +139,7 @@ impl Function {
     }
 }
 
-/// Behaviour of a function under change of sign of its argument.
+/// Behaviour of a function under a change of sign of its argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Parity {
     Even,

@@ -13,7 +13,7 @@ use crate::graph::number::Number;
 const MERGED_TERMS: usize = 24;
 /// The same bound for products.
 const MERGED_FACTORS: usize = 64;
-/// Nested sums below one operand are opened up to this many terms, products likewise.
+/// Nested sums below one operand are opened up to this many terms, and so are nested products.
 const GATHERED: usize = 1024;
 /// Integer powers larger than this stay calls of `pow`.
 pub(super) const MAX_EXPONENT: u32 = 1 << 16;
@@ -188,8 +188,8 @@ impl Dag {
         }
     }
 
-    /// Adds the exponents of equal factors and turns (√e)² into e, e/√e into √e and |e|² into e², signs into
-    /// `coefficient`. Returns whether the factors may have to be gathered once more.
+    /// Adds the exponents of equal factors and turns (√e)² into e, e/√e into √e and |e|² into e²; moves
+    /// signs into `coefficient`. Returns whether the factors may have to be gathered once more.
     fn collect_exponents(&self, factors: &mut Vec<(NodeId, i32)>, coefficient: &mut Number) -> bool {
         factors.sort_unstable_by_key(|&(node, _)| node);
         factors.dedup_by(|next, kept| {

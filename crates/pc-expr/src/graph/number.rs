@@ -70,7 +70,7 @@ impl Number {
         }
     }
 
-    /// `num / den · 10^exponent` for `den ≠ 0`, if that can be held and is within the range of f64.
+    /// `num / den · 10^exponent` for `den ≠ 0`, if that can be represented and is within the range of f64.
     fn exact(num: i128, den: i128, exponent: i32) -> Option<Number> {
         if num == 0 {
             return Some(Number::ZERO);
@@ -123,7 +123,7 @@ impl Number {
         }
     }
 
-    /// Its residue; `None` for a rounded number. Denominators are below the prime, so none is 0.
+    /// The residue of the number; `None` if it is rounded. Denominators are below the prime, so none is 0.
     pub fn residue(self) -> Option<Residue> {
         (!self.is_rounded()).then(|| self.fingerprint().first())
     }
@@ -188,7 +188,7 @@ impl Number {
         }
     }
 
-    /// The value as an integer, if it is one that fits.
+    /// The value as an integer, if it is an integer that fits.
     pub fn as_integer(self) -> Option<i32> {
         match self {
             Number::Rational { num, den: 1 } => i32::try_from(num).ok(),
@@ -301,7 +301,7 @@ impl From<f64> for Number {
 }
 
 /// Reads the shortest decimal expansion of `value` as digits · 10^exponent, if that is a small rational, or has so few
-/// digits that it is intended.
+/// digits that it must be meant as a decimal.
 fn decimal(value: f64) -> Option<Number> {
     let text = format!("{value:e}");
     let (mantissa, exponent) = text.split_once('e')?;
@@ -365,7 +365,7 @@ impl std::ops::Mul for Number {
     }
 }
 
-/// a + b, if both are exact and the sum can be held.
+/// a + b, if both are exact and the sum can be represented.
 fn sum(a: Number, b: Number) -> Option<Number> {
     let ((a, b, e), (c, d, f)) = (a.parts()?, b.parts()?);
     let least = e.min(f);
@@ -375,7 +375,7 @@ fn sum(a: Number, b: Number) -> Option<Number> {
     Number::exact(aligned(a, d, e)?.checked_add(aligned(c, b, f)?)?, b * d, least)
 }
 
-/// a b, if both are exact and the product can be held.
+/// a b, if both are exact and the product can be represented.
 fn product(a: Number, b: Number) -> Option<Number> {
     let ((a, b, e), (c, d, f)) = (a.parts()?, b.parts()?);
     Number::exact(a * c, b * d, e + f)
@@ -453,7 +453,7 @@ mod tests {
         }
     }
 
-    /// Powers of units, which are not small rationals, cancel as others do.
+    /// Powers of units, which are not small rationals, cancel like other numbers.
     #[test]
     fn powers_of_ten_are_exact() {
         let [unit, back] = [1e-9, 1e9].map(Number::from);

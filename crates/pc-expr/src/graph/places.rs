@@ -1,4 +1,4 @@
-//! Symbols looked up in a list of them.
+//! Symbols looked up in a list of symbols.
 
 use rustc_hash::FxHashMap;
 

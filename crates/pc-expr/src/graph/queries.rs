@@ -69,8 +69,8 @@ impl Graph {
         self.with(|dag| Cone::below(dag, roots).order.len())
     }
 
-    /// The factors of a product with their exponents, without its number; the expression itself if it is not
-    /// a product.
+    /// The factors of a product with their exponents, without its numerical factor; the expression itself if
+    /// it is not a product.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -147,7 +147,7 @@ impl Graph {
     }
 
     /// Whether fingerprints decide every identity between the values: no constant in them is rounded, and the
-    /// only functions are sine, cosine and the exponential, circular and hyperbolic.
+    /// only functions are the exponential, and sine and cosine, circular or hyperbolic.
     ///
     /// ```
     /// # use pc_expr::Graph;

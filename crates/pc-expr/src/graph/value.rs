@@ -219,7 +219,7 @@ impl Dag {
         PowerProduct { known, rest }
     }
 
-    /// log u = Σ e log f over its powers; log √f = ½ log f and log e^f = f among them.
+    /// log u = Σ e log f over its powers; including log √f = ½ log f and log e^f = f.
     fn logarithm(&mut self, u: NodeId) -> Value {
         let (c, mut factors) = self.factors_of(u);
         let mut sum = Vec::new();

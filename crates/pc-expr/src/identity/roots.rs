@@ -3,7 +3,7 @@
 //! A root is an unknown R with known R^q, as for √e and |e| (q = 2) and e^{1/q}. The powers R^k with k < q
 //! are kept separate and R^q is replaced by its value, which decides exactly the consequences of these laws:
 //! no sign is ever chosen, √(x²) is neither x nor −x. This holds while there are few roots: beyond
-//! [`MOST_TERMS`] a value is just its number for random roots.
+//! [`MOST_TERMS`] a value is only its fingerprint, with random roots.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use rustc_hash::FxHashMap;
 
 use crate::identity::fingerprint::Fingerprint;
 
-/// A value of more terms than this is no longer kept as a sum.
+/// A value with more terms than this is no longer kept as a sum.
 const MOST_TERMS: usize = 48;
 /// Products of sums with more terms than this in total are not multiplied out.
 const MOST_PRODUCTS: usize = 512;

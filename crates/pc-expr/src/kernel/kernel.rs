@@ -33,7 +33,7 @@ pub trait Kernel: Send {
     fn fork(&self) -> Box<dyn Kernel>;
 
     /// The machine code, if there is any, for callers that manage memory themselves, and the length
-    /// of its scratch memory. Valid as long as this kernel or a fork of it.
+    /// of its scratch memory. Valid as long as this kernel or a fork of it exists.
     fn machine_code(&self) -> Option<(Entry, usize)> {
         None
     }

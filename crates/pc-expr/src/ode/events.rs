@@ -45,17 +45,17 @@ impl Event {
         Event { name: name.into(), direction: Direction::Both, terminal: false, resets: false }
     }
 
-    /// The event with a direction.
+    /// This event with the given direction.
     pub fn direction(self, direction: Direction) -> Event {
         Event { direction, ..self }
     }
 
-    /// The event where its function rises through zero.
+    /// This event, only where its function rises through zero.
     pub fn rising(self) -> Event {
         self.direction(Direction::Rising)
     }
 
-    /// The event where its function falls through zero.
+    /// This event, only where its function falls through zero.
     pub fn falling(self) -> Event {
         self.direction(Direction::Falling)
     }

@@ -29,7 +29,7 @@ const MOST_STEPS: usize = 50;
 /// 0 takes its place: a body rests at the bottom of a groove. If several σ give the same ẏ, the smallest are taken.
 #[derive(Clone, Debug)]
 pub struct Sliding {
-    /// The surfaces, ascending.
+    /// The surfaces, in ascending order.
     pub surfaces: Vec<usize>,
     /// σ of each.
     pub weights: Vec<f64>,

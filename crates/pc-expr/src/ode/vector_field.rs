@@ -155,7 +155,7 @@ pub trait VectorField {
         Err(Failure::fatal(NoSeries))
     }
 
-    /// Expands the motion through y at time t to an order, at least 1, on the branch of these
+    /// Expands the motion through y at time t to the given order, at least 1, on the branch of these
     /// [sides](TaylorSeries::expand). Coefficients need not be finite.
     ///
     /// # Errors
@@ -206,13 +206,13 @@ pub trait VectorField {
     fn restart(&mut self, _t: f64, _y: &[f64]) {}
 
     /// The times, in ascending order, at which f is not smooth in t, such as those of a table that it reads:
-    /// no step crosses one.
+    /// no step crosses such a time.
     fn breaks(&self) -> &[f64] {
         &[]
     }
 
-    /// Announces that the following evaluations are on the side of t, a start or a [break](VectorField::breaks),
-    /// towards `end`. Returns whether f jumped there, so that a multistep method has to restart.
+    /// Announces that the following evaluations are on the side of t towards `end`, where t is a start or a
+    /// [break](VectorField::breaks). Returns whether f jumped there, so that a multistep method has to restart.
     fn enter(&mut self, _t: f64, _end: f64) -> bool {
         false
     }

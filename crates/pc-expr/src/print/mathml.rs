@@ -12,7 +12,7 @@ pub(super) const PLUS: &str = "<mo>+</mo>";
 pub(super) const MINUS: &str = "<mo>−</mo>";
 /// Brackets that do not grow, so that a line may end between them.
 pub(super) const BRACKETS: [&str; 2] = ["<mo stretchy=\"false\">(</mo>", "<mo stretchy=\"false\">)</mo>"];
-/// The words of a sentence: before names, between a name and its meaning, and between two names.
+/// The words of a sentence: before the names, between a name and its meaning, and between two such pairs.
 pub(super) const WORDS: [&str; 3] = ["<mtext> where </mtext>", "<mo>=</mo>", "<mo>,</mo>"];
 
 const APPLY: &str = "<mo>&#x2061;</mo>";

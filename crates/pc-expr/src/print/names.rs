@@ -163,7 +163,7 @@ impl<'g> Names<'g> {
         Written { style, terms, pieces, named: names.collect() }
     }
 
-    /// One of the lines, followed by its names.
+    /// One of the lines, followed by the names and their meanings.
     pub(super) fn sentence(&self, line: Expr<'g>, style: Style) -> String {
         let written = self.written(style);
         let [wheres, equals, comma] = style.words();

@@ -32,7 +32,7 @@ impl Style {
         if self == Style::MathMl { mathml::MINUS } else { "-" }
     }
 
-    /// The words of a sentence: before names, between a name and its meaning, and between two names.
+    /// The words of a sentence: before the names, between a name and its meaning, and between two such pairs.
     pub(super) fn words(self) -> [&'static str; 3] {
         match self {
             Style::MathMl => mathml::WORDS,

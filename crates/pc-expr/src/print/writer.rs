@@ -50,12 +50,12 @@ impl<'d> Writer<'d> {
         self.named.contains(&id)
     }
 
-    /// Bytes of a node as part of its parents.
+    /// Number of bytes of a node when it is part of its parents.
     pub(super) fn size(&self, id: NodeId) -> usize {
         self.pieces.get(&id).map_or(0, |piece| piece.text.len())
     }
 
-    /// Columns of a node as part of its parents.
+    /// Number of columns of a node when it is part of its parents.
     pub(super) fn columns(&self, id: NodeId) -> usize {
         self.pieces.get(&id).map_or(1, Piece::columns)
     }
@@ -229,7 +229,7 @@ impl<'d> Writer<'d> {
         Some(positive_first(signed))
     }
 
-    /// The sum that q·n is written as, if that is shorter.
+    /// The sum as which q·n is written, if that is shorter.
     pub(super) fn opened(&self, node: NodeId, q: Number) -> Option<(Number, &'d [(NodeId, Number)])> {
         match self.dag.node(node) {
             Node::Sum { constant, terms } if !self.named.contains(&node) => {

@@ -45,7 +45,7 @@ impl Builder {
         }
     }
 
-    /// The constant in a register, if it is one.
+    /// The constant in a register, if it holds one.
     pub(super) fn constant_in(&self, register: Register) -> Option<f64> {
         match self.values[register.index()] {
             Value::Constant(bits) => Some(f64::from_bits(bits)),

@@ -94,7 +94,7 @@ impl Program {
     /// The program of only the first outputs.
     ///
     /// # Panics
-    /// If there are fewer than `outputs`.
+    /// If this program has fewer than `outputs` outputs.
     #[must_use]
     pub fn leading(&self, outputs: usize) -> Program {
         let mut program = self.clone();

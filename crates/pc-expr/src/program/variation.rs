@@ -223,7 +223,7 @@ impl Tangent<'_> {
         du.map(|slope| self.writer.multiply(factor, slope))
     }
 
-    /// The derivative of that argument which is chosen.
+    /// The derivative of the chosen argument.
     fn of_choice(&mut self, function: Function, [a, b, c]: [Register; 3]) -> Option<Register> {
         let (first, second) = match function {
             Function::Step => (self.slope(b), self.slope(c)),

@@ -179,7 +179,7 @@ impl TaylorSeries {
     /// expansion.
     ///
     /// # Panics
-    /// If k is not below it.
+    /// If k is not below the order of the last expansion.
     pub fn branch_coefficients(&self, k: usize) -> &[f64] {
         let Layout { watched, branches, dim, width } = self.layout();
         match k {

@@ -188,8 +188,8 @@ impl Writer {
         self.next.multiply(order, u)
     }
 
-    /// x/k, by the double nearest to 1/k and its error: the rounding of 1/k, the same in every step, would
-    /// accumulate.
+    /// x/k, computed with the double nearest to 1/k and its error: the rounding of 1/k, the same in every
+    /// step, would accumulate.
     pub(super) fn over_order(&mut self, x: Register) -> Register {
         let lacking = self.next.multiply(x, Assembler::state(self.dim + 2));
         self.next.multiply_add(x, Assembler::time(), lacking)

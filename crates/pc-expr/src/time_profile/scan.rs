@@ -32,7 +32,7 @@ const NOISE: u32 = MOST / 4;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Feature {
     pub(crate) t: f64,
-    /// Number of the function among those watched.
+    /// Index of the function among those watched.
     pub(crate) function: usize,
     pub(crate) kind: Kind,
 }
@@ -103,7 +103,7 @@ impl Sign {
 /// later windows, since there is one at each step.
 #[derive(Clone, Debug)]
 pub(crate) struct Scan {
-    /// From where the features are kept.
+    /// The time from which features are kept.
     from: f64,
     end: f64,
     shortest: f64,
@@ -188,7 +188,8 @@ impl Scan {
     }
 
     /// Forgets the features up to `t` and finds those up to `to`, or as far as the allowed evaluations reach;
-    /// beyond, pieces are not halved if that is `enough`. Returns the time up to which features are known.
+    /// with `enough`, pieces beyond that are no longer halved. Returns the time up to which features are
+    /// known.
     pub(crate) fn between(
         &mut self,
         part: &mut Part,

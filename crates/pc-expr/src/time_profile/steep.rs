@@ -31,7 +31,7 @@ enum Kind {
     Reciprocal { divisor: usize, least: f64 },
     /// It hardly changes.
     Bounded,
-    /// There is no such evidence: a function of time and state.
+    /// There is no such evidence for a function of time and state.
     Moving,
 }
 

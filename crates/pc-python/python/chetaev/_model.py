@@ -180,7 +180,7 @@ class Model:
         return MappingProxyType(self._core.simulation())
 
     def check(self, **settings: Any) -> Check:
-        """What can be said of the model before it is run: rank, closure, constraints, what is conserved, what is stable.
+        """What can be said about the model before it is run: rank, closure, constraints, what is conserved, what is stable.
 
         The equations are compared with a second derivation.
 
@@ -263,7 +263,7 @@ class Model:
         Parameters
         ----------
         path : path
-            The file to write, whose name is that of the model.
+            The file to write, whose name becomes that of the model.
         form : str, optional
             ``"poincare"``, ``"reduced"``, ``"orthonormal"`` or ``"hamel"``.
         version : int
@@ -297,7 +297,7 @@ class Model:
             The state: ``"steady"``, the equilibrium or steady motion near the start; ``"rest"``, an equilibrium near it with all
             quasi-velocities 0; or ``"start"``, the start as it is.
         hold : sequence of str
-            Components of the state that keep their start values while a steady state is looked for.
+            Components of the state that keep their start values while a steady state is sought.
         cyclic : str, optional
             ``"keep"`` cyclic coordinates that are at rest, or ``"drop"`` all; by default they are kept at
             an equilibrium and dropped for a motion.

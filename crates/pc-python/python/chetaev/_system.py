@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 class System(_native.SystemCore):
     """The compiled equations ẏ = f(t, y) of a model, with parameters and start values that can be set.
 
-    ``system(t, y)`` is ẏ, and ``system.jac(t, y)`` its Jacobian, as :func:`scipy.integrate.solve_ivp` takes them. Where ``y`` is an array
+    ``system(t, y)`` is ẏ, and ``system.jac(t, y)`` its Jacobian, as :func:`scipy.integrate.solve_ivp` takes them. If ``y`` is an array
     of n × N numbers, a state in each column, so are the results, computed without holding the lock of the interpreter; ``t`` is a
     single number then, or N of them. Any number of threads may use a system at once. It can be pickled.
 
@@ -152,7 +152,7 @@ class System(_native.SystemCore):
     def reactions(self, t: npt.ArrayLike, y: npt.ArrayLike) -> dict[str, Any]:
         """The reaction of each constraint, by its name.
 
-        Together they add to the force Q_s the sum of each times the derivative of its constraint with
+        They add to the force Q_s the sum, over the constraints, of the reaction times the derivative of the constraint with
         respect to η_s.
         """
         if not self._model.constraints:
@@ -244,8 +244,8 @@ class System(_native.SystemCore):
     ) -> Motion:
         """Integrates the motion from the start.
 
-        What is not given comes from the text, else from the defaults of ``pc run``: the numbers are those of that program, bit
-        by bit. Ctrl-C ends it.
+        What is not given comes from the text, or else from the defaults of ``pc run``: the numbers equal those of that program
+        bit for bit. Ctrl-C ends the integration.
 
         Parameters
         ----------
@@ -263,12 +263,12 @@ class System(_native.SystemCore):
         rtol : float, optional
             Relative tolerance of a step.
         atol : float or mapping, optional
-            Absolute tolerance of a step: of all components of the state, or of some by their names. Else it is that of the text,
-            else min(1e-12, rtol s) for a component of the scale s at the start, where rounding leaves as much.
+            Absolute tolerance of a step: of all components of the state, or of some by name. Unless given it is that of the text,
+            or else min(1e-12, rtol s) for a component of the scale s at the start, where rounding errors permit this.
         max_step : float, optional
             The maximum length of a step.
         events : mapping, optional
-            Events beside those of the text: names with expressions that vanish, or with an :class:`Event`. The model is
+            Events in addition to those of the text: names with expressions that vanish, or with an :class:`Event`. The model is
             derived once more.
         samples_per_step, accumulation : optional
             How events are searched for, as in ``[simulation]``.
@@ -291,7 +291,7 @@ class System(_native.SystemCore):
         ------
         IntegrationError
             If the integration cannot continue, or the motion has lost an integral that it is proved to keep; its ``motion`` is
-            what was reached.
+            the part that was computed.
         DisagreementError
             If the second derivation gives a different motion.
 
@@ -384,7 +384,7 @@ class System(_native.SystemCore):
     ) -> Sweep:
         """Integrates many motions, for varied parameters and start values, on all cores.
 
-        The result does not depend on the number of threads. Ctrl-C ends it.
+        The result does not depend on the number of threads. Ctrl-C ends the sweep.
 
         Parameters
         ----------
@@ -430,7 +430,7 @@ class System(_native.SystemCore):
         interval : float
             The time after which tangent vectors are made orthonormal again.
         intervals, transient : int
-            How many intervals are counted, and how many before them are not.
+            How many intervals are counted, and how many before these are skipped.
         **settings
             ``method``, ``rtol``, ``atol`` as for :meth:`run`.
         """

@@ -2,9 +2,10 @@
 //!
 //! Straight-line code of thousands of operations does not fit into sixteen registers, and register
 //! allocators spill it badly. So the order is chosen here: depth first from the outputs, the
-//! operand that needs more registers first. So are the values that stay in memory: whenever there
-//! are too many for the registers, the one whose next use is furthest away goes to memory (Belady,
-//! IBM Systems Journal 5 (1966) 78), which for straight-line code minimises the number of loads.
+//! operand that needs more registers first. The values that stay in memory are also chosen here:
+//! whenever there are too many for the registers, the one whose next use is furthest away goes to
+//! memory (Belady, IBM Systems Journal 5 (1966) 78), which for straight-line code minimises the
+//! number of loads.
 
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};

@@ -57,7 +57,7 @@ impl LaneKernel {
         self.set
     }
 
-    /// Bytes of machine code.
+    /// Number of bytes of machine code.
     pub fn code_len(&self) -> usize {
         #[cfg(all(feature = "jit", target_arch = "x86_64", unix))]
         return self.code.as_ref().map_or(0, |code| code.len());

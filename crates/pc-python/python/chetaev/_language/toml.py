@@ -36,7 +36,7 @@ def number(value: float) -> str:
 def formula(value: Any) -> str:
     """An expression as a value of TOML, from a number, a text, an expression of this package or of SymPy, or a function of names.
 
-    A function is called with names of the model as its arguments: those of its parameters.
+    A function is called with expressions for the names of its parameters, which are names of the model.
     """
     # Numbers of SymPy are real numbers of Python too, but may have more digits.
     if hasattr(value, "free_symbols"):

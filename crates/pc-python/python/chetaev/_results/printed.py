@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Check:
-    """What can be said of a model before it is run.
+    """What can be said about a model before it is run.
 
     Attributes
     ----------

@@ -273,7 +273,7 @@ impl Emitter<'_> {
         Ok(d)
     }
 
-    /// Any function of three bits, with AVX-512.
+    /// Applies a function of three bits to each bit of the operands, with AVX-512.
     fn by_table(
         &mut self,
         operands: [u32; 3],

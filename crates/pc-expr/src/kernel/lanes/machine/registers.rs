@@ -5,7 +5,7 @@
 
 use super::assembler::{Assembler, EncodeError, Home, Last, Vector};
 
-/// A value in memory is loaded to a register if it is read again within this many lines.
+/// A value in memory is loaded into a register if it is read again within this many lines.
 const SOON: u32 = 24;
 /// The next use of a value that is not read again.
 pub(super) const NEVER: u32 = u32::MAX;
@@ -164,7 +164,7 @@ impl Registers {
         Ok(vector)
     }
 
-    /// Loads a value from memory, without noting its register.
+    /// Loads a value from memory, without recording its register.
     pub(super) fn load(
         &mut self,
         vector: Vector,
