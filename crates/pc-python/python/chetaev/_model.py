@@ -102,7 +102,7 @@ class Model:
         path : path
             The file.
         floating : bool
-            Whether the root link moves freely; it stands still otherwise.
+            Whether the root link moves freely; otherwise it is fixed.
 
         Raises
         ------
