@@ -1,9 +1,9 @@
 //! Programs as source text: the statements of one straight-line function.
 //!
-//! A [`Program`](crate::Program) becomes text in C or Rust that rounds as the kernels do. Read `layout` (the request
-//! and the result), the words of the languages (`comment`, `c`, `rust` and `identifier`, which `language` offers),
-//! then `function_body` (from a tape to statements) and `codegen`, which starts it; `chain` writes long tapes as
-//! tables.
+//! A [`Program`](crate::Program) is written as C or Rust source that rounds as the kernels do. Read `layout` (the
+//! request and the result), the words of the languages (`comment`, `c`, `rust` and `identifier`, which `language`
+//! offers), then `function_body` (from a tape to statements) and `codegen`, which starts it; `chain` writes long
+//! tapes as tables.
 
 pub(crate) mod c;
 pub(crate) mod chain;

@@ -1,13 +1,13 @@
 //! Expressions as nodes of a graph, interned and normalised as they are built.
 //!
-//! The operators of [`Expr`](expr::Expr) build nodes; nodes written alike are one node. Read `number` (exact
-//! constants), `function` (the elementary functions), `node` and `divisors` (sets of them) first, then `dag`
-//! (the arena) with `normal_form`, `calls`, `value`, `signs` and `regularity`, which treat sums and products,
-//! calls, values in prime fields, signs, and divisors. `graph` owns a `dag` and stays within a `budget`
-//! (`limits`, and for time a `deadline`); `expr` is the handle with which formulas are written; `subgraph`
-//! walks the nodes below some expressions, `queries` answers questions about whole expressions, `places`
-//! finds symbols in long lists, `transcription` writes expressions in another graph, and `evaluate` computes
-//! values node by node: the reference for all faster ways.
+//! The operators of [`Expr`](expr::Expr) build nodes; expressions written alike are one node. Read `number`
+//! (exact constants), `function` (the elementary functions), `node` and `divisors` (sets of them) first, then
+//! `dag` (the arena) with `normal_form`, `calls`, `value`, `signs` and `regularity`, which treat sums and
+//! products, calls, values in prime fields, signs, and divisors. `graph` owns a `dag` and stays within a
+//! `budget` (`limits`, and for time a `deadline`); `expr` is the handle with which formulas are written;
+//! `subgraph` walks the nodes below some expressions, `queries` answers questions about whole expressions,
+//! `places` finds symbols in long lists, `transcription` writes expressions in another graph, and `evaluate`
+//! computes values node by node: the reference for all faster methods.
 
 pub(crate) mod budget;
 pub(crate) mod calls;

@@ -1,10 +1,11 @@
 //! Identities, decided by values in prime fields (Schwartz, Zippel).
 //!
-//! It decides whether nodes are zero, equal, or linearly dependent, with an error probability below 2⁻¹⁰⁰.
-//! Read `prime_field` (arithmetic in GF(2⁶¹−c)), `fingerprint` (values in two of them), `roots` (values that
-//! contain roots), `circle_point` (sines and cosines); the graph gives each node such a value. Questions
-//! about several nodes at once follow: `rank`, by independent `blocks`, and `linear_relations`, by
-//! elimination in `echelon`. If constants are rounded, numbers decide, weighed by their `running_error`.
+//! This module decides whether nodes are zero, equal, or linearly dependent, with an error probability below
+//! 2⁻¹⁰⁰. Read `prime_field` (arithmetic in GF(2⁶¹−c)), `fingerprint` (values in two of them), `roots`
+//! (values that contain roots), `circle_point` (sines and cosines); the graph gives each node such a value.
+//! Then come questions about several nodes at once: `rank`, by independent `blocks`, and `linear_relations`,
+//! by elimination in `echelon`. If constants are rounded, numerical values decide, weighed by their
+//! `running_error`.
 
 pub(crate) mod blocks;
 pub(crate) mod circle_point;

@@ -1,7 +1,8 @@
 //! Expression graph, derivatives, programs and kernels.
 //!
-//! Three representations, one after the other: an [`Expr`] is what formulas are written with, a [`Graph`] interns
-//! its nodes and differentiates them, a [`Program`] is a tape of chosen outputs that a [`Kernel`] runs.
+//! Three representations, one after the other: an [`Expr`] is the handle with which formulas are written, a
+//! [`Graph`] interns their nodes and differentiates them, a [`Program`] is a tape of chosen outputs that a
+//! [`Kernel`] runs.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -31,8 +32,9 @@
 //!
 //! # Around it
 //!
-//! Below: no other crate of pc. Above: [pc-algebra](../pc_algebra/index.html), which makes frames of its
-//! expressions, and [pc-solve](../pc_solve/index.html), which integrates its vector fields.
+//! Below: no other crate of pc. Above: [pc-algebra](../pc_algebra/index.html), which makes frames
+//! from its expressions, and [pc-solve](../pc_solve/index.html), which integrates its vector
+//! fields.
 
 mod calculus;
 mod codegen;

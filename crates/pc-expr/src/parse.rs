@@ -1,4 +1,4 @@
-//! Text of an expression → syntax tree with spans.
+//! From the text of an expression to a syntax tree with spans.
 //!
 //! ```text
 //! sum     = product { ("+" | "-") product }

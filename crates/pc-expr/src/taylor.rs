@@ -1,4 +1,4 @@
-//! Taylor coefficients of solutions of ẏ = f(t, y), f a program [Moore 1966; Jorba, Zou 2005].
+//! Taylor coefficients of solutions of ẏ = f(t, y), where f is a program [Moore 1966; Jorba, Zou 2005].
 //!
 //! Each operation of f has a recurrence that gives the coefficient of order k of its result from those of its
 //! operands. `recurrences`, with those of the `functions`, writes them down as two programs, one for order 0

@@ -1,4 +1,5 @@
-//! Pages for a browser: all that is known of a model, and its motion alone; and the panels of a picture.
+//! Pages for a browser: one with all that is known about a model, one with its motion alone; and the panels
+//! of a picture.
 
 use pc_report::picture::{Content, Panel, Picture, Scale, Wanted};
 use pc_report::{ColumnKind, Columns, Recording, Samples, Scene, animation, report};
@@ -6,7 +7,7 @@ use pyo3::prelude::*;
 
 use crate::system::SystemCore;
 
-/// A motion as Python has it: times, then columns by their kinds.
+/// A motion as Python passes it: times, then columns by kind.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Recorded {
@@ -47,7 +48,8 @@ impl From<Recorded> for Recording {
     }
 }
 
-/// Curves on common axes, as Python draws them: title, scale of the axis up, times of events, and the curves with their names.
+/// Curves on common axes, as Python draws them: title, scale of the vertical axis, times of events, and the curves with their
+/// names.
 type Drawn = (String, &'static str, Vec<f64>, Vec<(String, Vec<f64>, Vec<f64>)>);
 
 /// The panels of a motion, whose curves are grouped by kind and scale.
@@ -77,7 +79,7 @@ fn drawn(panel: Panel) -> Drawn {
 
 #[pymethods]
 impl SystemCore {
-    /// The page of a motion; None if there is nothing to be drawn.
+    /// The page of a motion; `None` if there is nothing to be drawn.
     fn animation_page(&self, py: Python<'_>, recorded: Recorded) -> PyResult<Option<String>> {
         let record = Recording::from(recorded);
         self.derive(py, move |model| {
@@ -88,7 +90,7 @@ impl SystemCore {
         })
     }
 
-    /// The page of the model, with a motion where there is one.
+    /// The page of the model, with a motion if there is one.
     fn report_page(&self, py: Python<'_>, recorded: Option<Recorded>) -> PyResult<String> {
         let record = recorded.map(Recording::from);
         self.derive(py, move |model| model.derived(|assembly| Ok(report(model, assembly, record.as_ref())?)))

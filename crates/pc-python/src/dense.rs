@@ -27,7 +27,7 @@ impl DenseCore {
         self.motion.span()
     }
 
-    /// The states at some times, as columns.
+    /// The states at the given times, as columns.
     fn at<'py>(&self, py: Python<'py>, times: Vec<f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let mut states = vec![0.0; self.dim * times.len()];
         for (k, &t) in times.iter().enumerate() {
@@ -42,7 +42,7 @@ impl DenseCore {
 
 #[pymethods]
 impl SystemCore {
-    /// The motion from a state at the start to `end`, or to a terminal event before.
+    /// The motion from a state at the start to `end`, or to a terminal event before that.
     fn dense(&self, py: Python<'_>, end: f64, start: Vec<f64>, wished: Wished) -> PyResult<DenseCore> {
         let (mut model, derived) = self.now();
         let cancel = renewed(&mut model);

@@ -1,4 +1,4 @@
-//! Errors, and the exceptions that they become.
+//! Errors, and the exceptions as which they are raised.
 
 use std::error::Error as _;
 
@@ -91,7 +91,7 @@ fn raised(py: Python<'_>, name: &'static str, message: String) -> PyErr {
     }
 }
 
-/// With file, entry, line, column and help apart.
+/// The exception for an error in a model, with entry, line, column and help as attributes.
 fn of_model(py: Python<'_>, error: &ModelError) -> PyErr {
     let (diagnostic, position) = (error.diagnostic(), error.position());
     let arguments = (
@@ -108,7 +108,7 @@ fn of_model(py: Python<'_>, error: &ModelError) -> PyErr {
     }
 }
 
-/// In the words of the package, where the program has its own.
+/// The exception for an error of a run, in words of the package where the program has words of its own.
 fn of_run(py: Python<'_>, error: &RunError) -> PyErr {
     match error {
         RunError::Model(error) => of_model(py, error),

@@ -1,4 +1,4 @@
-//! Rates and their Jacobian at a state, and at each of many in an array.
+//! Rates and their Jacobian at a state, or at each of many states in an array.
 
 use std::ops::RangeInclusive;
 use std::time::{Duration, Instant};
@@ -15,16 +15,19 @@ use pyo3::prelude::*;
 use crate::error::Error;
 use crate::system::SystemCore;
 
-/// States computed before the first look at signals; after that the number depends on the time they take.
+/// Number of states computed before the first check for signals; after that the number depends on the time
+/// they take.
 const FIRST_PART: usize = 1 << 8;
 
-/// Between two looks at signals: well below the tenth of a second in which Ctrl-C is to end work, and long beside a look.
+/// Time between two checks for signals: well below the tenth of a second within which Ctrl-C is to end work, and long
+/// compared with a check.
 const BETWEEN_SIGNALS: RangeInclusive<Duration> = Duration::from_millis(5)..=Duration::from_millis(20);
 
-/// States that are gathered at once where an array has them across, so that they stay in the nearest cache.
+/// Number of states that are gathered at once if an array stores component after component, so that they stay
+/// in the nearest cache.
 const BLOCK: usize = 64;
 
-/// Components of states whose rates need no memory of their own.
+/// Number of components up to which the rates of a state need no memory of their own.
 const FEW: usize = 64;
 
 /// One time, or one for each state.
@@ -43,7 +46,7 @@ impl Times<'_> {
     }
 }
 
-/// How an array of n × N numbers lies in memory.
+/// How an array of n × N numbers is laid out in memory.
 #[derive(Clone, Copy)]
 enum Order {
     /// One state after the other.
@@ -54,7 +57,7 @@ enum Order {
 
 /// The quantity computed from a state.
 pub(crate) struct Quantity<F> {
-    /// The shape for one state; none for a number.
+    /// The shape for one state; empty for a number.
     pub(crate) shape: Vec<usize>,
     pub(crate) evaluate: F,
 }
@@ -70,7 +73,8 @@ pub(crate) fn floats<'py>(argument: &Bound<'py, PyAny>) -> PyResult<PyReadonlyAr
 }
 
 impl SystemCore {
-    /// A quantity at one state, or at each of an array, with states as columns; `t` a number, or one for each.
+    /// A quantity at one state, or at each state of an array, with states as columns; `t` is a number, or one
+    /// for each state.
     pub(crate) fn quantity<'py, F>(
         &self,
         t: &Bound<'py, PyAny>,
@@ -116,7 +120,7 @@ impl SystemCore {
         Ok(PyArray1::from_vec(y.py(), values).reshape(quantity.shape)?.into_any())
     }
 
-    /// What cannot be evaluated is not a number; where no state can, the error says why.
+    /// Values that cannot be evaluated are NaN; if no state can be evaluated, the error says why.
     fn at_many<'py, F>(
         &self,
         t: &Bound<'py, PyAny>,
@@ -220,7 +224,7 @@ struct Part {
     count: usize,
 }
 
-/// States one after the other.
+/// Evaluates states that are stored one after the other.
 fn along(
     part: &Part,
     times: Times<'_>,
@@ -235,7 +239,7 @@ fn along(
     Ok(())
 }
 
-/// States across, gathered by blocks.
+/// Evaluates states that are stored component by component, gathering them in blocks.
 fn across(
     part: &Part,
     times: Times<'_>,
@@ -265,7 +269,7 @@ fn across(
     Ok(())
 }
 
-/// From columns one after the other to rows one after the other, of a square matrix.
+/// Reorders a square matrix from column by column to row by row.
 fn transpose(matrix: &mut [f64], n: usize) {
     for i in 0..n {
         for j in 0..i {
@@ -276,7 +280,7 @@ fn transpose(matrix: &mut [f64], n: usize) {
 
 #[pymethods]
 impl SystemCore {
-    /// ẏ at one state, or at each of an array.
+    /// ẏ at one state, or at each state of an array.
     fn __call__<'py>(&self, t: &Bound<'py, PyAny>, y: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         // As an integrator calls it: nothing is converted, and one array made.
         if let Ok(array) = y.cast::<PyArray1<f64>>()
@@ -303,7 +307,7 @@ impl SystemCore {
         self.quantity(t, y, Quantity { shape: vec![self.dim()], evaluate })
     }
 
-    /// ∂f/∂y at one state, or at each of an array: entry (i, j) is ∂f_i/∂y_j.
+    /// ∂f/∂y at one state, or at each state of an array: entry (i, j) is ∂f_i/∂y_j.
     fn jac<'py>(&self, t: &Bound<'py, PyAny>, y: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let n = self.dim();
         let evaluate = |flow: &mut Flow, t: f64, y: &[f64], jacobian: &mut [f64]| {
@@ -314,7 +318,7 @@ impl SystemCore {
         self.quantity(t, y, Quantity { shape: vec![n, n], evaluate })
     }
 
-    /// Whether each entry of ∂f/∂y can be other than 0.
+    /// For each entry of ∂f/∂y, whether it can be nonzero.
     fn jac_sparsity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<bool>>> {
         let n = self.dim();
         let mut entries = vec![true; n * n];

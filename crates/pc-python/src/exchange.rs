@@ -16,7 +16,7 @@ use crate::error::Error;
 use crate::model::{ModelCore, renewed, variables, vouched};
 use crate::task::attended;
 
-/// The text of the model of a robot in URDF, and what was left out of it.
+/// The model text of a robot in URDF, and remarks on what was left out of it.
 #[pyfunction]
 pub(crate) fn text_of_urdf(
     name: String,
@@ -26,7 +26,7 @@ pub(crate) fn text_of_urdf(
     Ok(model_of_urdf(&Source::new(name, urdf), floating)?)
 }
 
-/// How an FMU integrates by itself, by its name and, for fixed steps, their length.
+/// How an FMU integrates on its own, given by the name of the method and, for fixed steps, their length.
 fn solver(name: &str, step: Option<f64>) -> Result<FmuSolver, Error> {
     match name {
         "dop853" => Ok(FmuSolver::Dop853),
@@ -42,7 +42,7 @@ fn solver(name: &str, step: Option<f64>) -> Result<FmuSolver, Error> {
 
 #[pymethods]
 impl ModelCore {
-    /// Writes the model as an FMU, whole or not at all, and says what to know of it.
+    /// Writes the model as an FMU, either completely or not at all, and returns remarks on it.
     #[expect(clippy::too_many_arguments, reason = "those of Python")]
     fn write_fmu(
         &self,

@@ -1,10 +1,10 @@
 //! The native part of the Python package `chetaev`: models, their equations printed, systems evaluated and integrated.
 //!
-//! It converts and delegates; what it returns is shaped by the package in `python/`, which says what users are told. Read
-//! `error`, the exceptions; `task`, work that Ctrl-C ends; `model`, a model and what is printed of it; `system`, its
-//! compiled equations, with `evaluation` of states and of arrays of them, and `quantities` beside the rates, of `mechanics`; then
-//! `motion`, `dense`, `stepper`, `sweep` and `lyapunov`, integrations, all by the settings in `plan`, `linear`, the motions near a state,
-//! `animation`, pages, and `exchange`, robots in URDF and FMUs.
+//! It converts and delegates; the package in `python/` presents what it returns, and documents it for users. Read `error`, the
+//! exceptions; `task`, work that Ctrl-C ends; `model`, a model and what is printed of it; `system`, its compiled equations, with
+//! `evaluation` at states and at arrays of states, and with `quantities` besides the rates, from `mechanics`; then `motion`, `dense`,
+//! `stepper`, `sweep` and `lyapunov`, integrations, all with the settings in `plan`; `linear`, the motions near a state; `animation`,
+//! pages; and `exchange`, robots in URDF and FMUs.
 
 #![expect(clippy::needless_pass_by_value, reason = "what Python gives is converted into values of our own")]
 

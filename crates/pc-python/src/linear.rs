@@ -13,7 +13,7 @@ use crate::error::Error;
 use crate::model::{ModelCore, renewed};
 use crate::task::attended;
 
-/// The state about which equations are linearized, as a mapping of Python has it.
+/// The state about which equations are linearized, as given in a mapping of Python.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Chosen {
@@ -41,7 +41,7 @@ impl Chosen {
 }
 
 impl ModelCore {
-    /// A text for people and a JSON object of what `work` finds.
+    /// What `work` finds, as a text for people and as a JSON object.
     fn found(
         &self,
         py: Python<'_>,

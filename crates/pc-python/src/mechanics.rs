@@ -7,9 +7,9 @@ use pc_print::bracket_of;
 
 use crate::error::Error;
 
-/// M of a system, which is derived when it is first asked for.
+/// The mass matrix M of a system, which is derived on the first request.
 pub(crate) struct MassMatrix {
-    /// M of (t, x, η), row after row.
+    /// M as a function of (t, x, η), row by row.
     pub(crate) entries: Evaluator,
     /// From momenta to quasi-velocities, where the state has momenta.
     pub(crate) transform: Option<LegendreTransform>,
@@ -31,7 +31,7 @@ impl MassMatrix {
     }
 }
 
-/// The values at (t, state), which have to be numbers.
+/// Computes the values at (t, state), which have to be finite.
 pub(crate) fn evaluate(
     program: &mut Evaluator,
     (t, state, parameters): (f64, &[f64], &[f64]),
@@ -58,7 +58,7 @@ pub(crate) fn read(
     Ok(state)
 }
 
-/// (f, g) as a function of t and (x, η), η those of the state.
+/// The bracket (f, g) as a function of t and (x, η), where η are those of the state.
 pub(crate) fn bracket(model: &Model, variables: Variables, f: &str, g: &str) -> Result<Evaluator, Error> {
     if !variables.are_own() {
         let why = "the state has other variables than the model; use the form poincare or canonical";

@@ -72,8 +72,8 @@ fn absolute(given: AbsoluteTolerance) -> GivenTolerance {
     }
 }
 
-/// Compares equations that leave with a second derivation. It is not an error if that cannot be made: `check`
-/// says why.
+/// Compares equations that are to be returned with a second derivation. It is not an error if there can be
+/// none: `check` says why.
 ///
 /// # Errors
 /// [`Error::Verify`] if the derivations disagree.
@@ -103,7 +103,8 @@ impl ModelCore {
         attended(py, &cancel, |_| Ok(()), move || deep(|| work(&model)))
     }
 
-    /// The same on the assembled model, for what leaves it in some form; without one it is compared by the work itself.
+    /// Does work on the assembled model, and compares what leaves it through `outlet`; without one, the work itself
+    /// makes the comparison.
     fn assembled<T: Send + 'static>(
         &self,
         py: Python<'_>,
@@ -132,7 +133,7 @@ impl ModelCore {
         Ok(ModelCore { model: Model::new(Document::from_bytes(&name, text)?), verify: true })
     }
 
-    /// The model that comes with the package, None if there is none with this name.
+    /// The model of this name that comes with the package, `None` if there is none.
     #[staticmethod]
     fn builtin(name: &str) -> Result<Option<ModelCore>, Error> {
         let Some(builtin) = Builtin::named(name) else { return Ok(None) };
@@ -293,7 +294,7 @@ impl ModelCore {
         })
     }
 
-    /// Source of the equations: names of files with their texts.
+    /// The source of the equations: names of files with their texts.
     fn source(
         &self,
         py: Python<'_>,

@@ -22,12 +22,12 @@ use crate::plan::Wished;
 use crate::system::SystemCore;
 use crate::task::attended;
 
-/// The fraction of the size of a state by which it may be off constraints: the first step removes anything
+/// The fraction of its size by which a state may be off the constraints: the first step removes anything
 /// smaller.
 const OFF: f64 = 1e-6;
 
-/// An error unless a state satisfies the constraints on which the steps of motions are kept, those on velocities and the lengths of
-/// quaternions too.
+/// Checks that a state satisfies the constraints on which steps keep a motion, including those on velocities and the lengths of
+/// quaternions.
 ///
 /// # Errors
 /// [`Error::OffConstraints`]
@@ -61,7 +61,7 @@ fn statistics<'py>(py: Python<'py>, done: &Statistics) -> PyResult<Bound<'py, Py
     Ok(entries)
 }
 
-/// How it ended in a word, and the name of a terminal event.
+/// How the run ended, in one word, and the name of the terminal event if there was one.
 fn ending(run: &Run) -> (&'static str, Option<String>) {
     match &run.ending {
         Ending::Completed => ("completed", None),
@@ -71,7 +71,7 @@ fn ending(run: &Run) -> (&'static str, Option<String>) {
     }
 }
 
-/// Why it did not reach its end, or is wrong.
+/// Why the run did not reach its end, or is wrong.
 fn error(run: &Run) -> Option<String> {
     if let Some(lost) = &run.lost {
         return Some(RunError::Lost(lost.clone()).to_string());
@@ -82,7 +82,7 @@ fn error(run: &Run) -> Option<String> {
     }
 }
 
-/// The names of the columns, by what they are.
+/// The names of the columns, by kind.
 fn kinds<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound<'py, PyDict>> {
     let kinds = PyDict::new(py);
     for (kind, places) in [
@@ -127,8 +127,8 @@ fn into_dict(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
 
 #[pymethods]
 impl SystemCore {
-    /// The requested motion, and its summary. The first one is compared with a second derivation unless `verify` says
-    /// otherwise of this one.
+    /// The requested motion, and its summary. The first motion of a system is compared with a second derivation, and
+    /// any other is not, unless `verify` says otherwise.
     fn integrate<'py>(
         &self,
         py: Python<'py>,

@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 
 use crate::error::Error;
 
-/// The options in a Python mapping; None stands for that of the text, or else the default.
+/// The options in a Python mapping; `None` stands for the value in the text, or else the default.
 #[derive(Clone, FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Wished {
@@ -87,7 +87,7 @@ impl Wished {
     }
 }
 
-/// The options of an integration by a plan.
+/// The options of an integration according to a plan.
 pub(crate) fn options(plan: &Plan, flow: &mut Flow) -> Options {
     plan.options(&plan.tolerances(flow))
 }

@@ -1,4 +1,4 @@
-//! Functions of the state beside the rates.
+//! Functions of the state besides the rates.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -11,7 +11,7 @@ use crate::evaluation::Quantity;
 use crate::mechanics::{MassMatrix, bracket, evaluate, read};
 use crate::system::SystemCore;
 
-/// The Poisson bracket (12) of two functions of the state, a function of it.
+/// The Poisson bracket (12) of two functions of the state, as a function of the state.
 #[pyclass(frozen, module = "chetaev._native")]
 pub(crate) struct Function {
     value: Mutex<(Evaluator, Option<LegendreTransform>)>,
@@ -59,7 +59,7 @@ impl SystemCore {
         self.quantity(t, y, Quantity { shape: Vec::new(), evaluate })
     }
 
-    /// M = ∂²L/∂η∂η at a state, row after row, and its size.
+    /// M = ∂²L/∂η∂η at a state: its size, and its entries row by row.
     fn mass_entries(&self, py: Python<'_>, t: f64, y: Vec<f64>) -> PyResult<(usize, Vec<f64>)> {
         self.check_length(y.len())?;
         let missing = self.mass.lock().unwrap_or_else(PoisonError::into_inner).is_none();

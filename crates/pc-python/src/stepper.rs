@@ -20,7 +20,7 @@ use crate::system::SystemCore;
 #[pyclass(frozen, module = "chetaev._native")]
 pub(crate) struct Stepper(Mutex<Walk>);
 
-/// Where a motion is.
+/// The current point of a motion.
 struct Walk {
     flow: Flow,
     options: Options,
@@ -28,7 +28,7 @@ struct Walk {
     t: f64,
     y: Vec<f64>,
     parameters: Vec<f64>,
-    /// The places of the inputs among the parameters.
+    /// The indices of the inputs among the parameters.
     inputs: Vec<usize>,
     /// The terminal event that has ended the motion.
     terminal: Option<String>,
@@ -61,8 +61,8 @@ impl Stepper {
         self.walk().terminal.clone()
     }
 
-    /// Goes on for the time `dt` with these values of the inputs, or with those of the last step, and returns the state there. A terminal
-    /// event ends the motion before.
+    /// Continues for the time `dt` with these values of the inputs, or with those of the last step, and returns the state there. A
+    /// terminal event ends the motion earlier.
     #[pyo3(signature = (dt, inputs=None))]
     fn step<'py>(
         &self,
@@ -83,7 +83,7 @@ impl Stepper {
         Ok(PyArray1::from_slice(py, &walk.y))
     }
 
-    /// Puts the motion at a time and a state; those of the start unless given.
+    /// Sets the motion to a time and a state; those of the start unless given.
     #[pyo3(signature = (y=None, t=None))]
     fn restart(&self, y: Option<Vec<f64>>, t: Option<f64>) -> PyResult<()> {
         let mut walk = self.walk();
@@ -146,7 +146,7 @@ impl Walk {
 
 #[pymethods]
 impl SystemCore {
-    /// A motion from the start, step by step; tolerances are scaled over a step of this length.
+    /// A motion from the start, step by step; tolerances are scaled for a step of this length.
     fn stepping(&self, wished: Wished) -> PyResult<Stepper> {
         let (mut model, derived) = self.now();
         let cancel = renewed(&mut model);

@@ -14,15 +14,16 @@ use crate::mechanics::MassMatrix;
 use crate::model::{ModelCore, finite, renewed, variables, vouched};
 use crate::task::attended;
 
-/// ẏ = f(t, y) of a model. Any number of threads may use it.
+/// The equations ẏ = f(t, y) of a model. Any number of threads may use it.
 #[pyclass(frozen, subclass, module = "chetaev._native")]
 pub(crate) struct SystemCore {
     pub(crate) variables: Variables,
     pub(crate) inventory: Inventory,
     state: Mutex<State>,
-    /// Held while values are set, which may take a derivation. No call waits for it, as the call may hold the interpreter's lock.
+    /// Locked while values are set, which may take a derivation. No call waits for it, as the call may hold the interpreter's
+    /// lock.
     setting: Mutex<()>,
-    /// Flows for calls that take long, with the version of the values that they have.
+    /// Flows for calls that take a long time, each with the version of its values.
     spare: Mutex<Vec<(u64, Flow)>>,
     pub(crate) mass: Mutex<Option<MassMatrix>>,
     /// Whether a motion has been compared with a second derivation.
@@ -34,7 +35,8 @@ pub(crate) struct Inventory {
     pub(crate) names: Vec<String>,
     pub(crate) t_start: f64,
     pub(crate) conserved: usize,
-    /// Of a row of a motion: coordinates, quasi-velocities, first-order states, then observables.
+    /// The names of the columns of a motion: coordinates, quasi-velocities, first-order states, then
+    /// observables.
     pub(crate) columns: Vec<String>,
     pub(crate) shown: usize,
     /// Whether equations are compared with a second derivation before they are returned.
@@ -49,7 +51,7 @@ pub(crate) struct State {
 }
 
 impl SystemCore {
-    /// Held while a state is evaluated, and never while Python may run.
+    /// Locks the state, which is held while a state is evaluated, and never while Python may run.
     pub(crate) fn state(&self) -> MutexGuard<'_, State> {
         // What a panic leaves behind is room that is written before it is read.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
@@ -174,7 +176,7 @@ impl SystemCore {
         ModelCore { model: self.state().model.clone(), verify: self.inventory.verify }
     }
 
-    /// Gives parameters and start other values, all or none.
+    /// Gives parameters and start new values: all of them, or none if that fails.
     fn update(
         &self,
         py: Python<'_>,

@@ -1,4 +1,4 @@
-//! Work on a separate thread, while the calling thread looks after signals.
+//! Work on a separate thread, while the calling thread watches for signals.
 
 use std::any::Any;
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -10,14 +10,14 @@ use pyo3::prelude::*;
 
 use crate::error::Error;
 
-/// Between two looks at signals: Ctrl-C ends work well within the tenth of a second that a user waits.
+/// Time between two checks for signals: Ctrl-C ends work well within a tenth of a second.
 const TICK: Duration = Duration::from_millis(25);
 
-/// Bytes of stack, as a main thread usually has; deeper work takes a separate stack.
+/// Bytes of stack, as many as a main thread usually has; deeper work uses a separate stack.
 const STACK: usize = 8 << 20;
 
-/// The result of `work`, which the interpreter does not wait for: other threads of Python go on. `tick` is called now and
-/// then on this one.
+/// The result of `work`, for which the interpreter does not wait: other threads of Python continue. `tick` is called now
+/// and then on this thread.
 ///
 /// # Errors
 /// Whatever a signal or `tick` raises, at once; the work is cancelled then and ends by itself.

@@ -1,4 +1,4 @@
-//! Surfaces on which functions of several pieces change from one piece to the next.
+//! Surfaces on which piecewise functions change from one piece to the next.
 
 use crate::graph::dag::Dag;
 use crate::graph::expr::Expr;
@@ -11,11 +11,11 @@ use crate::graph::subgraph::Cone;
 /// A surface on which a `step` or a `sign` in an expression changes.
 #[derive(Clone, Copy, Debug)]
 pub struct Break<'g> {
-    /// A function that changes its sign on the surface.
+    /// A function that changes sign on the surface.
     pub surface: Expr<'g>,
-    /// The expression as it is where the surface is positive.
+    /// The form of the expression where this function is positive.
     pub above: Expr<'g>,
-    /// The expression as it is where the surface is negative.
+    /// The form of the expression where this function is negative.
     pub below: Expr<'g>,
 }
 
@@ -47,7 +47,7 @@ impl Graph {
 }
 
 impl Dag {
-    /// The surface of a node that has two pieces, and these.
+    /// The surface of a node that has two pieces, followed by the two pieces.
     fn pieces(&self, node: NodeId) -> Option<[Atom; 3]> {
         match self.node(node) {
             Node::Call { function: Function::Step, args } => {

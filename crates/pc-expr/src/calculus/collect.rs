@@ -11,9 +11,9 @@ use crate::graph::number::Number;
 use crate::graph::places::SymbolPlaces;
 use crate::identity::blocks::independent_blocks;
 
-/// The most terms of a polynomial in several variables.
+/// The maximum number of terms of a polynomial in several variables.
 const MOST_TERMS: usize = 10_000;
-/// A sum of more terms is searched for groups of terms without common variables.
+/// A sum of more terms than this is searched for groups of terms without common variables.
 const MANY_TERMS: usize = 64;
 /// Expressions longer than this when written out are left as they are.
 const TOO_LONG: u32 = 20_000;
@@ -29,7 +29,7 @@ impl Graph {
         expressions.iter().map(|&e| self.collect(e, (variables, &places), 0)).collect()
     }
 
-    /// e collected by the variables from number `first` on.
+    /// e collected by the variables with index `first` and above.
     fn collect<'g>(
         &'g self,
         e: Expr<'g>,
@@ -112,7 +112,7 @@ impl Graph {
         Some(self.sum(parts))
     }
 
-    /// e as a polynomial in all of `variables`, if it is one of at most ten thousand terms.
+    /// e as a polynomial in all of `variables`, if it is a polynomial of at most ten thousand terms.
     pub fn polynomial<'g>(&'g self, e: Expr<'g>, variables: &[Expr<'g>]) -> Option<Polynomial<'g>> {
         let places = SymbolPlaces::of(variables);
         let mut terms = vec![(vec![0; variables.len()], e)];

@@ -20,7 +20,7 @@ impl Dag {
     }
 }
 
-/// Columns by node and depth: a node that occurs many times is measured once for each depth.
+/// The columns of each node at each depth: a node that occurs many times is measured once for each depth.
 struct Columns<'d> {
     dag: &'d Dag,
     known: FxHashMap<(NodeId, u32), usize>,

@@ -1,8 +1,8 @@
 //! Derivatives: reverse sweeps for gradients, forward sweeps along a direction.
 //!
-//! For `step`, min and max only the branch that is taken counts. The other one may have no value or no slope
-//! there, and 0 times that would be NaN. A branch that is not defined everywhere is therefore differentiated
-//! separately, and the choice is made between the derivatives.
+//! For `step`, min and max only the branch that is taken counts. The other branch may have no value or no
+//! slope there, and 0 times that would be NaN. A branch that is not defined everywhere is therefore
+//! differentiated separately, and the choice is made between the derivatives.
 
 use rustc_hash::FxHashMap;
 
@@ -27,7 +27,8 @@ impl Dag {
         self.gradient_with(output, symbols, &mut FxHashMap::default())
     }
 
-    /// As [`gradient`](Self::gradient), with the gradients of branches that are known.
+    /// As [`gradient`](Self::gradient), where `known` holds the gradients of branches that have been
+    /// computed.
     fn gradient_with(
         &mut self,
         output: Atom,
@@ -106,8 +107,8 @@ impl Dag {
         Some(Choice { condition, branches })
     }
 
-    /// An expression that is not negative where the first argument is the smaller, or the larger; at a tie
-    /// the first argument counts, whose node is older.
+    /// An expression that is not negative where the minimum, or the maximum, is the first argument; a tie
+    /// goes to the first argument, whose node is older.
     fn lead(&mut self, function: Function, [first, second]: [NodeId; 2]) -> Atom {
         let q = if function == Function::Min { Number::ONE } else { Number::MINUS_ONE };
         self.sum(Number::ZERO, &[(second, q), (first, -q)])
@@ -283,8 +284,8 @@ impl Graph {
         self.build_all(|dag| dag.gradient(output, &nodes))
     }
 
-    /// The ∂`output`/∂`symbol` that are not 0 for each of `outputs`, with the index of the symbol: the
-    /// [gradients](Graph::gradient) as a sparse matrix.
+    /// For each of `outputs` the derivatives ∂`output`/∂`symbol` that are not 0, each with the index of
+    /// its symbol: the [gradients](Graph::gradient) as a sparse matrix.
     ///
     /// ```
     /// # use pc_expr::Graph;

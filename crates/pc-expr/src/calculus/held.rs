@@ -1,4 +1,4 @@
-//! Expressions of several pieces, held on one of them.
+//! Piecewise expressions, held on one of their pieces.
 
 use rustc_hash::FxHashSet;
 
@@ -13,9 +13,9 @@ use crate::graph::subgraph::Cone;
 /// Expressions in which the side of each surface is a symbol: smooth functions, which are continued beyond the surfaces.
 #[derive(Clone, Debug)]
 pub struct Held<'g> {
-    /// The expressions with sides for the pieces.
+    /// The expressions, with pieces chosen by the sides.
     pub values: Vec<Expr<'g>>,
-    /// The surfaces, each with its side; a surface contains only the sides of preceding ones.
+    /// The surfaces, each with its side; a surface contains only the sides of preceding surfaces.
     pub surfaces: Vec<Surface<'g>>,
 }
 
@@ -35,7 +35,8 @@ impl Graph {
     /// sign(g) = s,   |g| = s g,   step(g, a, b) = step(s, a, b),   min(a, b) = step(s, b, a) with g = a − b,
     /// atan(u/v) = atan2(s u, s v) with g = v
     /// ```
-    /// The surfaces of a product are those of its factors. Expressions of one piece stay as they are.
+    /// The surfaces of a product are those of its factors. Expressions that are not piecewise stay as they
+    /// are.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -51,7 +52,8 @@ impl Graph {
         self.held_on(values, moving, &[])
     }
 
-    /// The same for further expressions, with the surfaces of the first ones: new ones follow them.
+    /// As [`held`](Self::held), for further expressions: known `surfaces` keep their sides, and new ones
+    /// follow them.
     pub fn held_on<'g>(
         &'g self,
         values: &[Expr<'g>],
@@ -81,7 +83,7 @@ impl Graph {
     }
 
     /// Held expressions between two pieces, for sides from −1 to 1: with step(s, a, b) = (1 + s)/2 a + (1 − s)/2 b for
-    /// each s made of `sides` they are the combinations of their values on both sides.
+    /// each s made of `sides`, the expressions become combinations of their values on both sides.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -107,7 +109,8 @@ impl Graph {
         }
     }
 
-    /// The choices by sides alone that contain no other one, with their arguments.
+    /// The calls of step whose condition contains only sides and that contain no other such call, with their
+    /// arguments.
     fn innermost_choices<'g>(
         &'g self,
         values: &[Expr<'g>],
@@ -136,7 +139,7 @@ impl Graph {
         choices.into_iter().map(|(node, args)| (node, args.map(argument))).collect()
     }
 
-    /// The nodes of several pieces whose surfaces move and that contain no other such node.
+    /// The piecewise nodes whose surfaces move and that contain no other such node.
     fn innermost_pieces<'g>(&'g self, values: &[Expr<'g>], moving: &[NodeId]) -> Vec<Piece<'g>> {
         let roots: Vec<Atom> = values.iter().map(|value| value.atom_in(self)).collect();
         let pieces = self.with(|dag| {
@@ -170,7 +173,7 @@ impl Graph {
         pieces.into_iter().map(piece).collect()
     }
 
-    /// A piece with its surfaces held; adds those that are new.
+    /// A piece with its surfaces held; adds the surfaces that are new.
     fn smooth<'g>(
         &'g self,
         Piece { function, args: [a, b, c], .. }: Piece<'g>,
@@ -192,7 +195,7 @@ impl Graph {
         }
     }
 
-    /// The sign of a function by the sides of its factors that move; adds those that are new.
+    /// The sign of a function in terms of the sides of its factors that move; adds the surfaces that are new.
     fn side<'g>(
         &'g self,
         function: Expr<'g>,
@@ -259,7 +262,7 @@ impl Graph {
     }
 }
 
-/// A call of a function of several pieces.
+/// A call of a piecewise function.
 #[derive(Clone, Copy)]
 struct Piece<'g> {
     node: NodeId,

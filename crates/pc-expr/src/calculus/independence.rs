@@ -1,8 +1,8 @@
 //! Expressions written without the symbols that they do not depend on.
 //!
 //! A symbol that cancels is replaced by a number at which, by its fingerprint, the value stays the
-//! same. If constants are rounded there may be no such number; then the derivative decides, by its
-//! `rounding`.
+//! same. If constants are rounded there may be no such number; then the derivative decides, which
+//! must not exceed its `rounding` error.
 
 use std::collections::HashSet;
 
@@ -46,13 +46,14 @@ impl Graph {
         if !form.is_undefined() && self.is_same_value(form, e) { form } else { e }
     }
 
-    /// e with sin z and cos z at a point of the circle, and z at a number, that leave its value unchanged; e
-    /// itself if none exist. The first point that adds no new divisor is taken, else the first.
+    /// e with sin z and cos z replaced by a point of the circle, and z by a number, such that its value is
+    /// unchanged; e itself if there are none. The first point that adds no new divisor is taken, or else the
+    /// first point.
     fn at_regular_point<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
         self.most_regular(e, self.forms_without(e, z, true))
     }
 
-    /// The same for sin z and cos z alone.
+    /// e with only sin z and cos z replaced by a point of the circle, chosen in the same way.
     fn at_regular_angle<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
         self.most_regular(e, self.forms_without(e, z, false))
     }
@@ -64,13 +65,14 @@ impl Graph {
         forms.find(|&form| self.is_as_regular(form, e)).or(first).unwrap_or(e)
     }
 
-    /// e, which does not depend on the symbol z, written without it: without new divisors, or with one that
-    /// vanishes only at unlikely places.
+    /// An expression equal to e, which does not depend on the symbol z, written without z: without new
+    /// divisors, or with one that vanishes only at exceptional points.
     pub(crate) fn without_symbol<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
         self.equal_form_without(e, z).or_else(|| self.rounded_form_without(e, z)).unwrap_or(e)
     }
 
-    /// The same if e does not depend on z, exactly or up to the rounding of its constants; e itself otherwise.
+    /// e written without the symbol z, if it does not depend on z, exactly or up to the rounding of its
+    /// constants; e itself otherwise.
     fn without_idle_symbol<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
         // With jumps the slope says nothing: that of atan(tan z) − z is zero.
         let jumps = || self.symbols_of(&self.seams(&[e])).contains(&z);
@@ -127,10 +129,10 @@ impl Graph {
         })
     }
 
-    /// `outputs` written without symbols other than `known`, as far as they do not depend on them. Such a
-    /// symbol cancels; it may appear if a result has the value of an older and cheaper expression that
-    /// contains it. If constants are rounded, it cancels if the derivative along it is no more than
-    /// [rounding](crate::Weighed::rest).
+    /// `outputs` written without symbols other than `known`, as far as they do not depend on these. Such
+    /// a symbol cancels; it may appear if a result has the value of an older and cheaper expression that
+    /// contains it. If constants are rounded, it cancels if the derivative with respect to it is no more
+    /// than [rounding error](crate::Weighed::rest).
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -152,14 +154,14 @@ impl Graph {
         outputs.iter().map(|&e| foreign(&[e]).into_iter().fold(e, without)).collect()
     }
 
-    /// e at those points of z, from simple to irregular ones, that leave its value unchanged.
+    /// The forms of e at points of z, from simple to irregular ones, that leave its value unchanged.
     fn forms_without<'g>(
         &'g self,
         e: Expr<'g>,
         z: Expr<'g>,
         whole: bool,
     ) -> impl Iterator<Item = Expr<'g>> + 'g {
-        // A form with a vanishing denominator or another value is passed over for the next point.
+        // A form with a vanishing denominator or another value is skipped, and the next point is tried.
         let oblique = [Number::ratio(3, 5), Number::ratio(4, 5)];
         [
             (Number::ZERO, [Number::ZERO, Number::ONE]),
@@ -217,7 +219,7 @@ impl Graph {
         repeated.into_iter().map(|node| self.expr(Atom::Node(node))).collect()
     }
 
-    /// e with sin z and cos z as given, and z itself if there is a `value`.
+    /// e with sin z and cos z replaced as given, and with z itself replaced if there is a `value`.
     fn at_point<'g>(
         &'g self,
         e: Expr<'g>,
@@ -236,7 +238,7 @@ impl Graph {
         self.trial(e, &replacements)
     }
 
-    /// e at a value of the symbol z.
+    /// e at this value of the symbol z.
     fn at<'g>(&'g self, e: Expr<'g>, z: Expr<'g>, value: Number) -> Expr<'g> {
         self.trial(e, &[(z.symbol_in(self), Atom::Constant(value))])
     }
@@ -266,7 +268,7 @@ impl Graph {
         self.with(|dag| dag.is_as_regular(some, other))
     }
 
-    /// Whether a form has the fingerprint of e, and its numerical values.
+    /// Whether a form has the same fingerprint and the same numerical values as e.
     fn is_same_value<'g>(&'g self, form: Expr<'g>, e: Expr<'g>) -> bool {
         (form - e).is_zero() && self.has_numbers_of(form, e)
     }

@@ -11,9 +11,9 @@ use crate::graph::node::{Atom, Folding, Node, NodeId};
 use crate::graph::number::Number;
 use crate::graph::subgraph::Cone;
 
-/// More products than this are not multiplied out.
+/// Brackets that would give more products than this are not multiplied out.
 const MOST_PRODUCTS: usize = 24;
-/// Expressions of more nodes are left as they are.
+/// Expressions of more nodes than this are left as they are.
 const MOST_NODES: usize = 4000;
 
 impl Graph {
@@ -156,7 +156,7 @@ impl Dag {
     }
 }
 
-/// The factors by ascending node, each node once.
+/// The factors in ascending order of their nodes, each node once.
 fn gathered(mut factors: Factors) -> Factors {
     factors.sort_unstable_by_key(|&(node, _)| node);
     factors.dedup_by(|next, kept| {

@@ -1,7 +1,8 @@
 //! Whether two forms of one function have the same numerical values.
 //!
-//! Fingerprints take rounded constants as exact: a divisor that is zero up to their rounding is not zero for
-//! them. So (1.19² − 1.4161) divided by itself is 1 by fingerprint, but noise in numbers.
+//! Fingerprints treat rounded constants as exact: a divisor that is zero up to the rounding of its constants
+//! does not count as zero. So (1.19² − 1.4161) divided by itself has the fingerprint of 1, but its numerical
+//! value is noise.
 
 use crate::graph::expr::Expr;
 use crate::graph::graph::Graph;
@@ -9,8 +10,8 @@ use crate::graph::graph::Graph;
 /// The number of points at which values are compared.
 const POINTS: u32 = 4;
 
-/// Relative differences of two forms that rounding may cause, even with much cancellation in one of them; a
-/// quotient of rounding errors differs by its own order.
+/// The largest relative difference between two forms that rounding may cause, even with much cancellation
+/// in one of them; a quotient of rounding errors differs by as much as its own size.
 const DIFFERENCE: f64 = 1e-6;
 
 impl Graph {
@@ -27,7 +28,7 @@ impl Graph {
     }
 }
 
-/// Coordinate number `i` of a point: between 1/4 and 5/4, by multiples of the golden section.
+/// Coordinate number `i` of a point: between 1/4 and 5/4, from multiples of the golden section.
 fn coordinate(point: u32, i: u32) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     0.25 + (f64::from(i * POINTS + point + 1) * GOLDEN).fract()

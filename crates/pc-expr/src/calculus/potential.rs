@@ -1,7 +1,8 @@
 //! Functions with a given gradient.
 //!
 //! Each product in a component f_i suggests candidates for its integral over z_i; fingerprints find the combination of
-//! these candidates whose gradient is the one given, if there is one. The result is proved, whatever the candidates.
+//! these candidates whose gradient is the one given, if there is one. The result is proved, however the candidates
+//! were chosen.
 
 use crate::graph::expr::Expr;
 use crate::graph::function::Function;
@@ -9,13 +10,13 @@ use crate::graph::graph::Graph;
 use crate::graph::node::{Atom, Node};
 use crate::graph::number::Number;
 
-/// The most products into which one component is multiplied out.
+/// The maximum number of products into which one component is multiplied out.
 const MOST_PRODUCTS: usize = 64;
 
-/// The most functions that are combined; this many take some hundredths of a second.
+/// The maximum number of functions that are combined; this many take some hundredths of a second.
 const MOST_FUNCTIONS: usize = 200;
 
-/// The longest components, in operations written out; this also bounds their depth.
+/// The maximum length of a component, in operations when written out; this also bounds its depth.
 const LONGEST: u32 = 1_000;
 
 /// The greatest power of a sum that is multiplied out.
@@ -113,7 +114,7 @@ impl Graph {
         (products.len() <= MOST_PRODUCTS).then_some(products)
     }
 
-    /// Functions of which the integral of a product over z may be a combination.
+    /// Candidate functions: the integral of a product over z may be a combination of these.
     fn integrals<'g>(&'g self, product: &Product<'g>, z: Expr<'g>) -> Vec<Expr<'g>> {
         let mut collected: Product<'g> = Vec::new();
         for &(factor, power) in product {
@@ -180,7 +181,7 @@ impl Graph {
         }
     }
 
-    /// Sine for a circular, hyperbolic sine for a hyperbolic function, and the argument.
+    /// The argument, with sine for a circular function and hyperbolic sine for a hyperbolic one.
     fn angle<'g>(&'g self, value: Expr<'g>) -> Option<(Function, Expr<'g>)> {
         let (function, angle) = self.call(value)?;
         match function {

@@ -13,7 +13,7 @@ use crate::graph::subgraph::Cone;
 const MAX_DEGREE: usize = 4;
 
 impl Graph {
-    /// The coefficients c_i = (1/i!) ∂ⁱe/∂zⁱ at z = 0 of a polynomial in z, if e is one of moderate degree.
+    /// The coefficients c_i = (1/i!) ∂ⁱe/∂zⁱ at z = 0 of e, if it is a polynomial in z of moderate degree.
     pub(super) fn powers<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Option<Vec<Expr<'g>>> {
         let (symbol, output) = (z.symbol_in(self), e.atom_in(self));
         match self.with(|dag| dag.powers(symbol, output)) {

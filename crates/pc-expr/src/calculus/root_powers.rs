@@ -11,7 +11,7 @@ use crate::graph::subgraph::Cone;
 const HIGHEST: i32 = 6;
 
 impl Graph {
-    /// Makes the powers w^(p/2), |p| ≤ 6, of the radicands w of all square roots in some expressions. An
+    /// Creates the powers w^(p/2), |p| ≤ 6, of the radicands w of all square roots in some expressions. An
     /// expression built later with the value of such a power becomes that power, which is the shorter form.
     /// Returns whether there are roots.
     ///

@@ -1,9 +1,9 @@
 //! Whether an expression is zero up to the rounding of its constants.
 //!
-//! Fingerprints take rounded constants as exact. The components of a unit vector, each rounded, have squares
-//! whose sum is not quite 1, so that the terms they multiply do not seem to cancel. Numbers decide: a sum
-//! that roundings leave over is small relative to its terms at every point; a sum that is genuinely small is
-//! as large as its terms.
+//! Fingerprints treat rounded constants as exact. The components of a unit vector, each rounded, have
+//! squares whose sum is not quite 1, so that the terms they multiply do not seem to cancel. Numerical
+//! values decide: a sum that is left over by rounding is small relative to its terms at every point; a
+//! genuinely small value is about as large as the terms of its sum.
 
 use crate::graph::evaluate::Scalar;
 use crate::graph::expr::Expr;
@@ -18,12 +18,13 @@ const SCALES: [f64; 5] = [1.0, 1e-3, 1e3, 1e-9, 1e9];
 const POINTS: u32 = 4;
 /// The number of points that must agree.
 const LEAST: usize = 4;
-/// The greatest fraction of its terms that some thousand roundings leave of a sum.
+/// The greatest remainder that some thousand rounding errors leave of a sum that cancels, as a fraction of
+/// its terms.
 const ROUNDING: f64 = 1e-12;
 
 impl Graph {
-    /// Whether an expression is zero, or no more than the rounding of its own operations at each of several
-    /// points; false if too few points have values.
+    /// Whether an expression is zero, or no more than the rounding error of its own operations at each of
+    /// several points; false if too few points have values.
     pub(crate) fn is_rounding<'g>(&'g self, e: Expr<'g>) -> bool {
         if e.is_zero() {
             return true;
@@ -48,8 +49,8 @@ impl Graph {
     }
 }
 
-/// Coordinate number `i` of a point, by multiples of the golden section: between 1/4 and 5/4, at every other
-/// point of either sign.
+/// Coordinate number `i` of a point, from multiples of the golden section: between 1/4 and 5/4, and at every
+/// other point of either sign.
 fn coordinate(point: u32, i: u32) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     let part = (f64::from(i * POINTS + point + 1) * GOLDEN).fract();

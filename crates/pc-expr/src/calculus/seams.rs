@@ -1,4 +1,4 @@
-//! Where functions of several pieces change from one piece to the next.
+//! Where piecewise functions change from one piece to the next.
 
 use crate::graph::dag::Dag;
 use crate::graph::expr::Expr;
@@ -10,7 +10,7 @@ use crate::graph::subgraph::Cone;
 impl Graph {
     /// Functions at whose zeros finite values may jump: those at which `step`, `sign`, `abs`, `min`, `max`,
     /// `atan2` and roots of squares change to another piece, and the divisors below functions that bound a pole, as in
-    /// atan(1/x). Most often values do not jump there: abs(x) does not, x/abs(x) does.
+    /// atan(1/x). In most cases the values do not jump there: abs(x) does not, x/abs(x) does.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -63,7 +63,7 @@ impl Dag {
         }
     }
 
-    /// The factors of a product of even powers.
+    /// The factors of a product in which every exponent is even.
     fn squared(&self, node: NodeId) -> Vec<NodeId> {
         let Node::Product { factors } = self.node(node) else { return Vec::new() };
         let factors = self.factors(factors);
@@ -77,7 +77,7 @@ impl Dag {
         divisors.map(|&(divisor, _)| divisor).collect()
     }
 
-    /// The arguments of a function that stays finite where they have a pole.
+    /// The arguments of a function that stays finite where these have a pole.
     fn bounded(&self, node: NodeId) -> Vec<Atom> {
         match self.node(node) {
             Node::Call { function: Function::Atan | Function::Tanh | Function::Exp, args } => {

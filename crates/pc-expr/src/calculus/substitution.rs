@@ -10,8 +10,8 @@ use crate::graph::number::Number;
 use crate::graph::places::SymbolPlaces;
 use crate::graph::subgraph::{Assignment, Cone};
 
-/// Symbols with their replacements. Applying it to a short expression costs only the size of that expression,
-/// however long the list is.
+/// Symbols with their replacements. The cost of applying it to an expression depends only on the size of that
+/// expression, however long the list is.
 #[derive(Clone, Debug)]
 pub struct Substitution<'g> {
     graph: &'g Graph,
@@ -65,7 +65,8 @@ impl<'g> Substitution<'g> {
 }
 
 impl Graph {
-    /// The replacement of each symbol of `replacements` by the expression paired with it, all at once.
+    /// The substitution that replaces each symbol of `replacements` by the expression paired with it, all at
+    /// once.
     ///
     /// ```
     /// # use pc_expr::Graph;

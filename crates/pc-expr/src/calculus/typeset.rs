@@ -1,4 +1,4 @@
-//! Expressions as a book prints them: short to read, whatever they cost to compute.
+//! Expressions as a book prints them: short to read, whatever the cost of computing them.
 //!
 //! Sums are rewritten from the inside outwards by identities that hold wherever both sides have values: cos a
 //! cos b + sin a sin b is cos(a − b), p/d + q/d is (p + q)/d, and common factors are taken out of sums.
@@ -13,10 +13,10 @@ use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::number::Number;
 use crate::graph::subgraph::Cone;
 
-/// Sums of more terms are left as they are: all pairs of terms would be compared.
+/// Sums of more terms than this are left as they are, as all pairs of terms would have to be compared.
 const MOST_TERMS: usize = 60;
 
-/// Powers of nodes, by ascending node.
+/// Powers of nodes, in ascending order of the nodes.
 pub(super) type Factors = Vec<(NodeId, i32)>;
 
 /// q Π nᵢ^eᵢ
@@ -169,8 +169,8 @@ impl Dag {
         self.sum_of(&all)
     }
 
-    /// Merges products of sines and cosines into sines and cosines of sums of angles, as often as possible.
-    /// Returns whether any merged.
+    /// Merges products of sines and cosines into sines and cosines of sums of angles wherever possible.
+    /// Returns whether any were merged.
     pub(super) fn merge_angles(&mut self, terms: &mut Vec<Term>) -> bool {
         let mut merged = false;
         'again: loop {
@@ -316,7 +316,8 @@ impl Dag {
 }
 
 impl Dag {
-    /// The sum with some terms in brackets behind the function or sum that most of them have in common.
+    /// The sum with those terms collected in brackets that share the factor, a function or sum, that most
+    /// terms have in common.
     fn in_groups(&mut self, constant: Number, terms: &[Term]) -> Option<Atom> {
         let is_long = |node: NodeId| matches!(self.node(node), Node::Call { .. } | Node::Sum { .. });
         let has = |term: &Term, node: NodeId| term.factors.iter().any(|&(factor, e)| factor == node && e > 0);
@@ -351,8 +352,8 @@ fn split(one: &Factors, other: &Factors) -> (Factors, [Factors; 2]) {
     (common, both)
 }
 
-/// The powers that two products have in common: of each factor the smaller one, if both are above or both
-/// below the line.
+/// The powers that two products have in common: for each factor the smaller power, if both are above or
+/// both below the fraction bar.
 fn shared(one: &Factors, other: &Factors) -> Factors {
     let power = |&(node, e): &(NodeId, i32)| {
         let &(_, f) = other.iter().find(|(known, _)| *known == node)?;

@@ -4,7 +4,7 @@ use crate::codegen::comment::is_hidden;
 use crate::codegen::layout::Calls;
 use crate::graph::function::Function;
 
-/// Words of C and C++, and macros that `<math.h>`, `<stdio.h>` or the compiler may define.
+/// Keywords of C and C++, and macros that `<math.h>`, `<stdio.h>` or the compiler may define.
 const RESERVED: &[&str] = &[
     "alignas",
     "alignof",
@@ -187,7 +187,7 @@ pub(crate) fn string(text: &str) -> String {
     literal
 }
 
-/// The functions that `<math.h>` lacks, with the values of [`Function::eval`].
+/// The functions that `<math.h>` lacks; they return the values of [`Function::eval`].
 pub(crate) fn helpers(calls: &Calls, prefix: &str) -> String {
     let mut text = String::new();
     for &function in &calls.functions {

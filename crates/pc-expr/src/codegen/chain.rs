@@ -10,7 +10,7 @@ use crate::codegen::{c, rust};
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};
 
-/// Columns of a Jacobian that are computed together.
+/// Number of columns of a Jacobian that are computed together.
 const LANES: usize = 4;
 /// The greatest width of a line of the table.
 const WIDTH: usize = 110;
@@ -31,7 +31,7 @@ pub struct ChainLayout {
 pub struct Chain {
     /// The table, and the function that computes values.
     pub support: String,
-    /// The functions that it and the derivatives call.
+    /// The functions called there and in the derivatives.
     pub calls: Calls,
     places: Vec<usize>,
     values: usize,
@@ -39,7 +39,8 @@ pub struct Chain {
     layout: ChainLayout,
 }
 
-/// The derivative of a function of the argument `x` and the value `r`, if it has a rule.
+/// The text of the derivative of a function in terms of its argument `x` and its value `r`, if there is a
+/// rule for it.
 fn derivative(function: Function, language: Language, [x, r]: [&str; 2]) -> Option<String> {
     let call = |f: Function, x: &str| match language {
         Language::C => c::call(f, x, ""), // the library has all of them
@@ -74,8 +75,8 @@ fn called(function: Function) -> Option<Function> {
 }
 
 impl Program {
-    /// The program as a table of operations; none if it calls a function of several arguments or without a derivative,
-    /// is fused, or has more values than can be numbered with 16 bits.
+    /// The program as a table of operations; `None` if it calls a function that has several arguments or no
+    /// derivative, is fused, or has more values than can be numbered with 16 bits.
     pub fn chain(&self, language: Language, layout: ChainLayout) -> Option<Chain> {
         let mut calls = Calls::default();
         for instruction in &self.code {
@@ -151,7 +152,7 @@ impl Chain {
         }
     }
 
-    /// The expression of each kind of operation, of a and b.
+    /// The expression for each kind of operation, in terms of a and b.
     fn kinds(&self, functions: &[Function]) -> Vec<String> {
         let call = |&f: &Function| match self.language {
             Language::C => c::call(f, "a", &self.layout.prefix),
@@ -161,7 +162,7 @@ impl Chain {
         own.into_iter().chain(functions.iter().map(call)).collect()
     }
 
-    /// The derivatives of each kind by a and b.
+    /// The derivatives of each kind with respect to a and b.
     fn slopes(&self, functions: &[Function]) -> Vec<[String; 2]> {
         let own = [
             ["1.0", "1.0"],
@@ -315,8 +316,8 @@ impl Chain {
         }
     }
 
-    /// The body of a function that writes the derivatives of the first outputs with respect to the state, as
-    /// many as there are components, column by column.
+    /// The body of a function that writes the derivatives of the first outputs, as many as the state has
+    /// components, with respect to the state, column by column.
     pub fn jacobian(&self, program: &Program, array: &str) -> String {
         let functions = &self.calls.functions;
         let (first, values, n) = (program.first_result(), self.values, program.state_len());

@@ -7,17 +7,17 @@ use crate::codegen::layout::{Calls, FunctionBody, Language, Layout, Place};
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};
 
-/// Longer text gets a name instead of being written inside another expression.
+/// Text longer than this gets a name instead of being written inside another expression.
 const LONG: usize = 80;
 /// A sum of several lines may become this long before its beginning gets a name.
 const LONG_SUM: usize = 320;
-/// From this many operations on, declarations take a tenth of the text.
+/// With this many operations or more, declarations are a tenth of the text.
 const MANY: usize = 2000;
-/// Longer comments are cut.
+/// Comments longer than this are cut.
 const LONGEST_COMMENT: usize = 60;
 /// The deepest nesting of brackets.
 const DEEP: u32 = 3;
-/// Longer lines are broken.
+/// Lines longer than this are broken.
 const WIDTH: usize = 110;
 /// Comments of neighbouring lines are aligned up to this column.
 const ALIGNED: usize = 64;
@@ -61,8 +61,8 @@ impl Piece {
         self.terms[0].starts_with('-')
     }
 
-    /// The text, and the depth of its brackets, to the right of an operator: there it cannot begin with a
-    /// sign.
+    /// The text for use to the right of an operator, where it cannot begin with a sign, and the depth
+    /// of its brackets.
     fn right(&self, least: Binding) -> (String, u32) {
         if self.binding >= least && !self.is_negative() {
             (self.text(), self.depth)
@@ -71,7 +71,7 @@ impl Piece {
         }
     }
 
-    /// The text, and the depth of its brackets, at the beginning of an expression.
+    /// The text for use at the beginning of an expression, and the depth of its brackets.
     fn left(&self, least: Binding) -> (String, u32) {
         if self.binding >= least { (self.text(), self.depth) } else { self.bracketed() }
     }
@@ -100,7 +100,7 @@ pub(crate) struct Printer<'a> {
     uses: Vec<u32>,
     /// The text of each register: its name, or the expression that is written in place.
     pieces: Vec<Piece>,
-    /// Names that are taken.
+    /// Names that are already in use.
     names: FxHashSet<String>,
     locals: usize,
     /// A name for the value of each register, from the slot of an output.
@@ -174,7 +174,7 @@ impl<'a> Printer<'a> {
         FunctionBody { inputs, statements: self.statements.text(self.language), calls: self.calls }
     }
 
-    /// Writes the outputs, in their order, whose registers are below `known`.
+    /// Writes the outputs whose registers are below `known`, in their order.
     fn write_outputs(&mut self, done: &mut usize, known: usize) {
         while let Some(output) = self.program.outputs().get(*done).filter(|output| output.index() < known) {
             let slot = &self.layout.slots[*done];
@@ -317,7 +317,7 @@ impl<'a> Printer<'a> {
         named
     }
 
-    /// Declares a local for a value.
+    /// Declares a local variable for a value.
     fn named(&mut self, register: usize, instruction: Instruction, piece: &Piece) -> Piece {
         let name = self.local(register, instruction);
         let head = match self.language {

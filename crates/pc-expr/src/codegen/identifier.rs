@@ -83,7 +83,8 @@ pub(crate) fn distinct<S: AsRef<str>>(language: Language, names: &[S], reserved:
     taken
 }
 
-/// Whether a local of this name would not compile, or hide an argument or a function that the code calls.
+/// Whether a local variable of this name would not compile, or would hide an argument or a function that the
+/// code calls.
 fn is_reserved(language: Language, name: &str) -> bool {
     matches!(name, "t" | "y" | "p" | "main")
         || match language {

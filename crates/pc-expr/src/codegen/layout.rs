@@ -1,11 +1,12 @@
-//! The request for source text, which is the language and the places of inputs and outputs, and the result.
+//! The request for source text, which gives the language and says where inputs and outputs are, and the
+//! result.
 
 use crate::graph::function::Function;
 
-/// A language that programs are printed in.
+/// A language in which programs are printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Language {
-    /// C99 that is also C++.
+    /// C99 that is also valid C++.
     C,
     /// Rust of the 2021 edition or later.
     Rust,
@@ -46,14 +47,14 @@ pub struct Layout {
     pub reserved: Vec<String>,
 }
 
-/// The text of a function body, lines indented by four spaces.
+/// The text of a function body, with lines indented by four spaces.
 #[derive(Clone, Debug, Default)]
 pub struct FunctionBody {
-    /// Declarations of the inputs that are read, and marks of the unused arguments.
+    /// Declarations of the inputs that are read, and statements that mark the other arguments as unused.
     pub inputs: String,
     /// Statements that compute the outputs.
     pub statements: String,
-    /// The functions that they call.
+    /// The functions that the statements call.
     pub calls: Calls,
 }
 
@@ -67,7 +68,7 @@ pub struct Calls {
 }
 
 impl Calls {
-    /// The union of both.
+    /// The functions called by either piece of code.
     #[must_use]
     pub fn and(mut self, other: &Calls) -> Calls {
         other.functions.iter().for_each(|&function| self.add(function));

@@ -3,7 +3,7 @@
 use crate::codegen::layout::Calls;
 use crate::graph::function::Function;
 
-/// Words of the language, names that cannot be bound, and those that the printed code uses.
+/// Keywords of the language, names that cannot be bound, and names that the printed code uses.
 const RESERVED: &[&str] = &[
     "Err", "None", "Ok", "Self", "Some", "abstract", "as", "async", "await", "become", "box", "break",
     "const", "continue", "crate", "do", "dyn", "else", "enum", "extern", "f64", "false", "final", "fn",
@@ -65,7 +65,8 @@ fn library_function(function: Function) -> Option<Library> {
     Some(Library { name: function.name(), arguments, std, libm })
 }
 
-/// The functions that neither `std` nor `libm` has, with the values of [`Function::eval`], and the module `math`.
+/// The functions that neither `std` nor `libm` has, which return the values of [`Function::eval`], and the module
+/// `math`.
 pub(crate) fn helpers(calls: &Calls) -> String {
     let mut text = String::new();
     let mut library = Vec::new();

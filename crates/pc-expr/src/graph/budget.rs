@@ -6,9 +6,9 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use crate::graph::deadline::Deadline;
 use crate::graph::limits::{Limits, Spent};
 
-/// What remains of some limits. Clones are the same budget, and graphs [within](crate::Graph::within) it
-/// share it. Once it is spent, no graph makes further expressions, and derivations in them end in
-/// [`ExprError::Spent`](crate::ExprError::Spent).
+/// The memory and time that remain within some limits. Clones share one budget, as do graphs
+/// [within](crate::Graph::within) it. Once it is spent, no graph creates further expressions, and
+/// derivations in them end in [`ExprError::Spent`](crate::ExprError::Spent).
 ///
 /// ```
 /// use pc_expr::{Budget, ExprError, Graph, Limits, Spent};
@@ -22,7 +22,7 @@ use crate::graph::limits::{Limits, Spent};
 pub struct Budget(Arc<Meter>);
 
 impl Budget {
-    /// A new budget; its time begins to run.
+    /// A new budget, whose time begins now.
     pub fn new(limits: Limits) -> Budget {
         let deadline = Deadline::new(&limits);
         Budget(Arc::new(Meter::new(limits, deadline)))
@@ -33,7 +33,7 @@ impl Budget {
         Budget(Arc::new(Meter::new(self.0.limits.clone(), self.0.deadline.clone())))
     }
 
-    /// The limits it was made with.
+    /// The limits with which it was made.
     pub fn limits(&self) -> &Limits {
         &self.0.limits
     }
@@ -59,9 +59,9 @@ impl Default for Budget {
     }
 }
 
-/// The bytes of a node, with its values and its entries in tables.
+/// The number of bytes of a node, including its values and its entries in tables.
 const NODE: usize = 256;
-/// The bytes of an operand of a sum or product, or of a term of a value with roots.
+/// The number of bytes of an operand of a sum or product, or of a term of a value with roots.
 const OPERAND: usize = 64;
 
 /// The remainder of a budget, shared by graphs that work together.
@@ -106,7 +106,7 @@ impl Meter {
         self.used.fetch_sub(bytes, Ordering::Relaxed);
     }
 
-    /// Whether the budget is spent; the clock and the handle are read only if `looks`.
+    /// Whether the budget is spent; the clock and the handle are read only if `looks` is true.
     pub(crate) fn is_spent(&self, looks: bool) -> bool {
         if looks {
             self.look();

@@ -56,7 +56,7 @@ impl Dag {
         }
     }
 
-    /// x^y: integer powers are products, half-integer ones powers of a square root.
+    /// x^y: integer powers are products, half-integer powers are powers of a square root.
     fn constant_power(&mut self, x: Atom, y: Number) -> Atom {
         let small = |q: Number| q.as_integer().filter(|e| e.unsigned_abs() <= MAX_EXPONENT);
         if let Some(e) = small(y) {
@@ -80,7 +80,7 @@ impl Dag {
         self.admit(&Candidate::Call(function, ids))
     }
 
-    /// The constant that a node of a constant holds.
+    /// The constant itself, if the atom is a node that holds one; otherwise the atom.
     pub(crate) fn constant_of(&self, atom: Atom) -> Atom {
         match atom {
             Atom::Node(id) => match self.node(id) {

@@ -15,7 +15,7 @@ use crate::graph::number::Number;
 use crate::identity::fingerprint::Fingerprint;
 use crate::identity::roots::{Roots, Terms, Value};
 
-/// The bit of symbols that are confined to expressions made with them.
+/// The bit shared by symbols that are confined to the expressions made with them.
 const CONFINED: u64 = 1 << 63;
 
 #[derive(Debug)]
@@ -25,7 +25,7 @@ pub(crate) struct Dag {
     meter: Option<Arc<Meter>>,
     /// Bytes taken from the meter.
     taken: u64,
-    /// Counts queries: the clock and the handle for cancelling are read only once in a number of queries.
+    /// Counts queries: the clock and the handle for cancelling are read only once every so many queries.
     asked: u8,
     nodes: Vec<Node>,
     fingerprints: Vec<Fingerprint>,
@@ -34,11 +34,12 @@ pub(crate) struct Dag {
     roots: Roots,
     /// Whether the node is known not to be negative where it has a value.
     pub(super) nonnegative: Vec<bool>,
-    /// Operations of the node written out as a tree, saturating: decides which of two nodes of equal value is kept.
+    /// The number of operations of the node written out as a tree, saturating: it decides which of two nodes of
+    /// equal value is kept.
     costs: Vec<u32>,
     /// A bit for each symbol in the node; symbols 63 apart share a bit, and [confined](CONFINED) ones have the last bit.
     symbols: Vec<u64>,
-    /// Nodes that sums and products above them do not open.
+    /// Nodes that are kept as units in the sums and products above them.
     kept: FxHashSet<NodeId>,
     /// The divisors in the node.
     pub(super) divisors: Vec<Divisors>,
@@ -161,7 +162,7 @@ impl Dag {
         }
     }
 
-    /// The symbol of that name, made if it is new.
+    /// The symbol of that name, created if it is new.
     pub(crate) fn symbol(&mut self, name: &str) -> NodeId {
         let candidate = Candidate::Symbol(name);
         self.find(&candidate).unwrap_or_else(|| {
@@ -171,7 +172,7 @@ impl Dag {
         })
     }
 
-    /// Keeps this node closed in sums and products built from now on.
+    /// Keeps this node as a unit in sums and products built from now on.
     pub(crate) fn keep(&mut self, atom: Atom) {
         if let Atom::Node(node) = atom {
             let (node, _) = self.split_coefficient(node, Number::ONE);
@@ -206,8 +207,8 @@ impl Dag {
     /// Interns a candidate. If folding by value is on, constants are recognised, and an existing node of
     /// equal value up to sign is returned if it is at least as good.
     ///
-    /// Of two forms of one function, the better one divides by less, as x + 1 has a value at x = 1 and (x²
-    /// − 1)/(x − 1) has none, and takes fewer roots, as (√x − 1)² + 2√x is undefined below 0; if neither is
+    /// Of two forms of one function, the better one has fewer divisors (x + 1 has a value at x = 1, where
+    /// (x² − 1)/(x − 1) has none) and fewer roots ((√x − 1)² + 2√x is undefined below 0); if neither is
     /// worse, the shorter one is better. Two forms, each with a divisor that the other lacks, stay separate
     /// nodes; so do two forms if one contains a [confined](Dag::confine) symbol.
     ///
@@ -277,7 +278,7 @@ impl Dag {
         by_value.insert_unique(hash(&id), id, hash);
     }
 
-    /// ±n; a negative is interned by structure, without computing its value again.
+    /// ±n; a negative node is interned by its structure, without computing its value again.
     pub(super) fn signed(&mut self, node: NodeId, sign: Number) -> Atom {
         if sign.is_one() {
             return Atom::Node(node);
@@ -370,7 +371,7 @@ impl Dag {
         id
     }
 
-    /// Whether a candidate costs less than a node, or as much with fewer symbols.
+    /// Whether a candidate costs less than a node, or costs as much and contains fewer symbols.
     fn is_shorter(&self, candidate: &Candidate<'_>, node: NodeId) -> bool {
         let (ours, theirs) = (self.symbols_of(candidate), self.symbols[node.index()]);
         let without = ours & theirs == ours && ours != theirs;
@@ -391,8 +392,8 @@ impl Dag {
         }
     }
 
-    /// Operations of a candidate written out as a tree: n − 1 additions or multiplications for n operands,
-    /// plus those of coefficients and powers; a division counts four, a call ten.
+    /// The number of operations of a candidate written out as a tree: n − 1 additions or multiplications
+    /// for n operands, plus those of coefficients and powers; a division counts four, a call ten.
     fn cost_of(&self, candidate: &Candidate<'_>) -> u32 {
         let sum = |costs: &mut dyn Iterator<Item = u32>| costs.fold(0u32, u32::saturating_add);
         match *candidate {

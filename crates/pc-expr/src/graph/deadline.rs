@@ -4,8 +4,8 @@ use std::time::{Duration, Instant};
 
 use crate::graph::limits::{Cancel, Limits, Spent};
 
-/// When work must end: after some time, or when it is [cancelled](Cancel). Work that makes no expressions,
-/// and so takes nothing from a [`Budget`](crate::Budget), checks a deadline occasionally.
+/// When work must end: after some time, or when it is [cancelled](Cancel). Work that creates no
+/// expressions, and so takes nothing from a [`Budget`](crate::Budget), checks a deadline occasionally.
 ///
 /// ```
 /// use std::time::Duration;
@@ -19,7 +19,7 @@ use crate::graph::limits::{Cancel, Limits, Spent};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deadline {
-    /// The time allowed and the instant at which it is over; `None` beyond the range of the clock.
+    /// The time allowed and the instant at which it is over, `None` if that is beyond the range of the clock.
     time: Option<(Duration, Instant)>,
     cancel: Cancel,
 }

@@ -4,20 +4,20 @@ use rustc_hash::FxHashMap;
 
 use crate::graph::node::NodeId;
 
-/// A set of more divisors counts as the set of all divisors.
+/// A set of more divisors than this counts as the set of all divisors.
 const MOST: usize = 64;
 
-/// A set of divisors, by its index.
+/// The index of a set of divisors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct Divisors(u32);
 
 impl Divisors {
     pub(crate) const NONE: Divisors = Divisors(0);
-    /// A set too large to be kept, taken to hold every divisor.
+    /// A set too large to be stored, which is taken to contain every divisor.
     pub(super) const ALL: Divisors = Divisors(u32::MAX);
 }
 
-/// The sets that occur, each kept once.
+/// The sets that occur, each stored once.
 #[derive(Debug)]
 pub(crate) struct DivisorSets {
     sets: Vec<Vec<NodeId>>,

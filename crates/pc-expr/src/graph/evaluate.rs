@@ -1,4 +1,5 @@
-//! Evaluation of the graph itself over any scalar: the reference that programs and derivatives are tested against.
+//! Evaluation of the graph itself over any scalar: the reference against which programs and derivatives are
+//! tested.
 
 use std::ops::{Add, Mul, Neg};
 
@@ -13,18 +14,18 @@ use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::number::Number;
 use crate::graph::subgraph::Cone;
 
-/// A number that expressions can be evaluated over: `f64`, or a dual number.
+/// A type of number with which expressions can be evaluated: `f64`, or a dual number.
 pub trait Scalar: Copy + Add<Output = Self> + Mul<Output = Self> + Neg<Output = Self> {
     /// The constant.
     fn from_f64(value: f64) -> Self;
-    /// The constant, exactly where that is possible.
+    /// The constant as such a number, exact where possible.
     fn constant(value: Number) -> Self {
         Self::from_f64(value.to_f64())
     }
     /// x^exponent
     #[must_use]
     fn powi(self, exponent: i32) -> Self;
-    /// The function at `args`, as many as its arity.
+    /// The value of the function at `args`, as many as its arity.
     fn call(function: Function, args: &[Self]) -> Self;
 }
 

@@ -1,4 +1,4 @@
-//! The handle that formulas are written with.
+//! The handle with which formulas are written.
 
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -86,7 +86,7 @@ impl<'g> Expr<'g> {
         })
     }
 
-    /// Number of operations when written out as a tree (saturating), functions counting ten.
+    /// Number of operations when written out as a tree (saturating), with each function counted as ten.
     pub fn tree_cost(self) -> u32 {
         match (self.graph, self.atom) {
             (Some(graph), Atom::Node(id)) => graph.with(|dag| dag.cost(id)),
@@ -116,7 +116,7 @@ impl<'g> Expr<'g> {
         id
     }
 
-    /// A function of as many arguments as its arity.
+    /// The function applied to the first of `args`, as many as its arity.
     ///
     /// # Panics
     /// If there are fewer arguments.
@@ -125,7 +125,7 @@ impl<'g> Expr<'g> {
         Expr::combined(args, |dag, atoms| dag.call(function, &atoms[..function.arity()]))
     }
 
-    /// `f` of some expressions, in their graph.
+    /// The result of `f` on the operands, in the graph to which they belong.
     fn combined(operands: &[Expr<'g>], f: impl FnOnce(&mut Dag, &[Atom]) -> Atom) -> Expr<'g> {
         if let Some(graph) = operands.iter().find_map(|x| x.graph) {
             let atoms: Vec<Atom> = operands.iter().map(|x| x.atom_in(graph)).collect();
@@ -204,7 +204,7 @@ impl<'g> Expr<'g> {
 }
 
 impl Graph {
-    /// The symbol of that name; the same name is always the same symbol.
+    /// The symbol of that name; the same name always gives the same symbol.
     pub fn symbol(&self, name: &str) -> Expr<'_> {
         let node = self.with(|dag| dag.symbol(name));
         self.expr(Atom::Node(node))
@@ -359,7 +359,7 @@ impl<'g, T: Into<Expr<'g>>> MulAssign<T> for Expr<'g> {
 }
 
 impl<'g> Sum for Expr<'g> {
-    /// One n-ary sum.
+    /// The terms added up as one n-ary sum.
     fn sum<I: Iterator<Item = Expr<'g>>>(terms: I) -> Expr<'g> {
         let terms: Vec<Expr<'g>> = terms.collect();
         match terms.iter().find_map(|x| x.graph) {

@@ -1,8 +1,8 @@
-//! The elementary functions an expression may contain: one name, one arity, one value each.
+//! The elementary functions an expression may contain, each with one name, one arity and one value.
 
 /// A function of one, two or three arguments.
 ///
-/// tan, cot and small integer powers are written with these and with products.
+/// tan, cot and small integer powers are written in terms of these functions and of products.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs)] // each variant is the function of its name
 pub enum Function {
@@ -139,7 +139,7 @@ impl Function {
     }
 }
 
-/// Behaviour of a function under change of sign of its argument.
+/// Behaviour of a function under a change of sign of its argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Parity {
     Even,

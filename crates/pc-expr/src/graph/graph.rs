@@ -10,10 +10,10 @@ use crate::graph::node::Folding;
 
 /// An arena of interned expressions.
 ///
-/// Expressions that are written alike are the same node; so are, unless switched off with
-/// [`Folding::Structural`], expressions that *are* alike: each node carries its value at two random points of a
-/// prime field, so sin²x + cos²x is 1 and a structure coefficient that is a constant in disguise is that constant.
-/// The field only tests identity; values are always computed in `f64`.
+/// Expressions that are written alike are the same node; so are expressions of equal value, unless this is
+/// switched off with [`Folding::Structural`]: each node carries its value at two random points of a prime field,
+/// so sin²x + cos²x is 1 and a structure coefficient that is a constant in disguise is that constant. The field
+/// only tests identity; values are always computed in `f64`.
 ///
 /// ```
 /// use pc_expr::Graph;
@@ -54,7 +54,7 @@ impl Graph {
         Graph { dag: RefCell::new(Dag::new(folding, Some(budget.meter()))), budget }
     }
 
-    /// An empty graph with the folding of this one, on a budget that others may share.
+    /// An empty graph with the same folding as this one, which draws on a budget that others may share.
     #[must_use]
     pub fn within(self, budget: &Budget) -> Graph {
         Graph::of(self.folding(), budget.clone())
@@ -65,8 +65,8 @@ impl Graph {
         Graph::of(folding, self.budget.clone())
     }
 
-    /// Does some work in this graph. If its budget is spent before or during the work, the incomplete result
-    /// is replaced by an error that names the stage.
+    /// Runs a named stage of work in this graph. If its budget is spent before or during the work, the
+    /// incomplete result is replaced by an error that names the stage.
     ///
     /// # Errors
     /// [`ExprError::Spent`], and the errors of the work.
@@ -96,12 +96,12 @@ impl Graph {
         self.with(|dag| dag.folding())
     }
 
-    /// Number of nodes made so far.
+    /// Number of nodes created so far.
     pub fn len(&self) -> usize {
         self.with(|dag| dag.len())
     }
 
-    /// Whether no node has been made.
+    /// Whether no node has been created.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -1,11 +1,11 @@
-//! Limits of work.
+//! Limits on the amount of work.
 
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// The limits of work on expressions.
+/// The limits on work with expressions.
 #[derive(Clone, Debug)]
 pub struct Limits {
     /// Bytes of expressions, estimated from the nodes; 4 GiB by default.
@@ -45,7 +45,7 @@ impl PartialEq for Cancel {
     }
 }
 
-/// The [limit](Limits) that is reached.
+/// The [limit](Limits) that has been reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spent {
     /// The memory.

@@ -1,7 +1,7 @@
 //! The rules by which sums and products are normalised as they are built.
 //!
 //! A sum is a linear combination c + Σ qᵢ nᵢ with rational coefficients, a product a power product Π nᵢ^eᵢ with
-//! integer exponents; rational factors of products live in the sum around them.
+//! integer exponents; rational factors of products are kept in the sum around them.
 
 use crate::graph::dag::Dag;
 use crate::graph::function::Function;
@@ -13,9 +13,9 @@ use crate::graph::number::Number;
 const MERGED_TERMS: usize = 24;
 /// The same bound for products.
 const MERGED_FACTORS: usize = 64;
-/// Nested sums below one operand are opened up to this many terms, products likewise.
+/// Nested sums below one operand are opened up to this many terms, and so are nested products.
 const GATHERED: usize = 1024;
-/// Larger integer powers stay calls of `pow`.
+/// Integer powers larger than this stay calls of `pow`.
 pub(super) const MAX_EXPONENT: u32 = 1 << 16;
 
 impl Dag {
@@ -86,7 +86,7 @@ impl Dag {
         }
     }
 
-    /// q·n of a node that is not itself a number times a node.
+    /// q·n for a node n that is not itself a number times a node.
     fn scaled(&mut self, q: Number, node: NodeId) -> Atom {
         if q.is_one() {
             return Atom::Node(node);
@@ -188,8 +188,8 @@ impl Dag {
         }
     }
 
-    /// Adds the exponents of equal factors and turns (√e)² into e, e/√e into √e and |e|² into e², signs into
-    /// `coefficient`. Returns whether the factors may have to be gathered once more.
+    /// Adds the exponents of equal factors and turns (√e)² into e, e/√e into √e and |e|² into e²; moves
+    /// signs into `coefficient`. Returns whether the factors may have to be gathered once more.
     fn collect_exponents(&self, factors: &mut Vec<(NodeId, i32)>, coefficient: &mut Number) -> bool {
         factors.sort_unstable_by_key(|&(node, _)| node);
         factors.dedup_by(|next, kept| {
@@ -271,7 +271,7 @@ impl Dag {
         }
     }
 
-    /// x/y; a divisor that is identically zero is remembered, and the quotient undefined.
+    /// x/y; if the divisor is identically zero, this is recorded, and the quotient is undefined.
     pub(crate) fn divide(&mut self, x: Atom, y: Atom) -> Atom {
         if y.is_zero() {
             self.zero_divisions.push(x);

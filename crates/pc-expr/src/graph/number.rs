@@ -1,4 +1,5 @@
-//! Constants: exact rationals while they stay small or are small times a power of ten, rounded reals beyond.
+//! Constants: exact rationals as long as they are small, or small times a power of ten; rounded reals
+//! otherwise.
 
 use std::fmt;
 use std::hash::{Hash, Hasher};
@@ -6,14 +7,15 @@ use std::hash::{Hash, Hasher};
 use crate::identity::fingerprint::Fingerprint;
 use crate::identity::prime_field::Residue;
 
-/// Largest numerator and denominator kept exactly: both, and so their quotient, are then correctly rounded in f64.
+/// Largest numerator and denominator kept exactly: both are then exact in f64, and so their quotient is correctly
+/// rounded.
 const EXACT: i128 = 1 << 53;
 
 /// A constant of the graph.
 ///
-/// An `f64` given to the graph counts as the decimal number it prints as, so that `0.1 + 0.2` is 3/10 and like terms cancel exactly,
-/// also with powers of units such as 10⁻⁹. Results that are neither a small rational nor one times a power of ten are rounded to
-/// `f64`.
+/// An `f64` given to the graph counts as the decimal number that it is printed as, so that `0.1 + 0.2` is 3/10 and like terms cancel
+/// exactly, even with powers of units such as 10⁻⁹. Results that are neither a small rational nor a small rational times a power of
+/// ten are rounded to `f64`.
 #[derive(Clone, Copy, Debug)]
 pub enum Number {
     /// `num / den` in lowest terms, `den > 0`, both at most 2⁵³ in size.
@@ -37,8 +39,8 @@ pub enum Number {
     Real(f64),
 }
 
-/// The most digits of a number that is meant as a decimal. A number with more digits is the rounded result of
-/// a computation.
+/// The maximum number of digits of a number that is taken to be meant as a decimal. A number with more digits
+/// is taken to be the rounded result of a computation.
 const DIGITS: usize = 15;
 
 impl Number {
@@ -68,7 +70,7 @@ impl Number {
         }
     }
 
-    /// `num / den · 10^exponent` for `den ≠ 0`, if that can be held and is within the range of f64.
+    /// `num / den · 10^exponent` for `den ≠ 0`, if that can be represented and is within the range of f64.
     fn exact(num: i128, den: i128, exponent: i32) -> Option<Number> {
         if num == 0 {
             return Some(Number::ZERO);
@@ -106,7 +108,7 @@ impl Number {
         }
     }
 
-    /// The value at the random point of each of two prime fields: that of the number itself.
+    /// The value of the number in each of two prime fields; it does not depend on the random points there.
     pub(crate) fn fingerprint(self) -> Fingerprint {
         match self {
             Number::Rational { num, den: 1 } => Fingerprint::integer(num),
@@ -121,7 +123,7 @@ impl Number {
         }
     }
 
-    /// Its residue; `None` for a rounded number. Denominators are below the prime, so none is 0.
+    /// The residue of the number; `None` if it is rounded. Denominators are below the prime, so none is 0.
     pub fn residue(self) -> Option<Residue> {
         (!self.is_rounded()).then(|| self.fingerprint().first())
     }
@@ -186,7 +188,7 @@ impl Number {
         }
     }
 
-    /// The value as an integer, if it is one that fits.
+    /// The value as an integer, if it is an integer that fits.
     pub fn as_integer(self) -> Option<i32> {
         match self {
             Number::Rational { num, den: 1 } => i32::try_from(num).ok(),
@@ -299,14 +301,14 @@ impl From<f64> for Number {
 }
 
 /// Reads the shortest decimal expansion of `value` as digits · 10^exponent, if that is a small rational, or has so few
-/// digits that it is intended.
+/// digits that it must be meant as a decimal.
 fn decimal(value: f64) -> Option<Number> {
     let text = format!("{value:e}");
     let (mantissa, exponent) = text.split_once('e')?;
     let fraction_digits = mantissa.split_once('.').map_or(0, |(_, fraction)| fraction.len() as i32);
     let digits: i64 = mantissa.replace('.', "").parse().ok()?;
     let number = Number::exact(digits.into(), 1, exponent.parse::<i32>().ok()? - fraction_digits)?;
-    // Of the size of a rounding error of 1, it may be one.
+    // A number of the size of a rounding error of 1 may be one.
     let is_meant = || {
         digits.unsigned_abs().to_string().len() <= DIGITS
             && !(f64::EPSILON / 16.0..f64::EPSILON * 64.0).contains(&value.abs())
@@ -363,7 +365,7 @@ impl std::ops::Mul for Number {
     }
 }
 
-/// a + b, if both are exact and the sum can be held.
+/// a + b, if both are exact and the sum can be represented.
 fn sum(a: Number, b: Number) -> Option<Number> {
     let ((a, b, e), (c, d, f)) = (a.parts()?, b.parts()?);
     let least = e.min(f);
@@ -373,7 +375,7 @@ fn sum(a: Number, b: Number) -> Option<Number> {
     Number::exact(aligned(a, d, e)?.checked_add(aligned(c, b, f)?)?, b * d, least)
 }
 
-/// a b, if both are exact and the product can be held.
+/// a b, if both are exact and the product can be represented.
 fn product(a: Number, b: Number) -> Option<Number> {
     let ((a, b, e), (c, d, f)) = (a.parts()?, b.parts()?);
     Number::exact(a * c, b * d, e + f)
@@ -407,7 +409,7 @@ impl Hash for Number {
 }
 
 impl fmt::Display for Number {
-    /// Small fractions as such (`-1/3`), other rationals as decimals if they terminate.
+    /// Writes small fractions as such (`-1/3`), and other rationals as decimals if these terminate.
     ///
     /// Very large and very small numbers are written with an exponent.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -451,7 +453,7 @@ mod tests {
         }
     }
 
-    /// Powers of units, which are not small rationals, cancel as others do.
+    /// Powers of units, which are not small rationals, cancel like other numbers.
     #[test]
     fn powers_of_ten_are_exact() {
         let [unit, back] = [1e-9, 1e9].map(Number::from);

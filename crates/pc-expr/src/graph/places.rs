@@ -1,11 +1,11 @@
-//! Symbols looked up in a list of them.
+//! Symbols looked up in a list of symbols.
 
 use rustc_hash::FxHashMap;
 
 use crate::graph::expr::Expr;
 use crate::graph::node::{Atom, NodeId};
 
-/// The place of each symbol of a list: without it, looking up all n symbols takes n² comparisons.
+/// The index of each symbol in a list: without it, looking up all n symbols takes n² comparisons.
 ///
 /// ```
 /// # use pc_expr::{Graph, SymbolPlaces};
@@ -21,7 +21,7 @@ pub struct SymbolPlaces {
 
 impl SymbolPlaces {
     /// The indices in a list; for a symbol that occurs twice, the first index. An expression that is not a
-    /// symbol has no place.
+    /// symbol has no index.
     pub fn of(symbols: &[Expr<'_>]) -> SymbolPlaces {
         let mut by_node = FxHashMap::default();
         for (place, symbol) in symbols.iter().enumerate() {
@@ -32,7 +32,7 @@ impl SymbolPlaces {
         SymbolPlaces { by_node }
     }
 
-    /// The place of a symbol of the same graph.
+    /// The index in the list of a symbol of the same graph.
     pub fn get(&self, symbol: Expr<'_>) -> Option<usize> {
         match symbol.atom() {
             Atom::Node(node) => self.of_node(node),

@@ -29,9 +29,9 @@ impl Graph {
         }
     }
 
-    /// The expression x, which sums and products made from it do not open from now on: the result of a step
-    /// of a recursion, computed once and used as a unit. Otherwise a sum of sums becomes one sum, which is
-    /// shorter to read and longer to compute.
+    /// The expression x, kept as a unit in all sums and products made from it from now on: for the result
+    /// of a step of a recursion, which is to be computed only once. Otherwise a sum of sums becomes one
+    /// sum, which is shorter to read and longer to compute.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -69,8 +69,8 @@ impl Graph {
         self.with(|dag| Cone::below(dag, roots).order.len())
     }
 
-    /// The factors of a product with their exponents, without its number; the expression itself if it is not
-    /// a product.
+    /// The factors of a product with their exponents, without its numerical factor; the expression itself if
+    /// it is not a product.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -147,7 +147,7 @@ impl Graph {
     }
 
     /// Whether fingerprints decide every identity between the values: no constant in them is rounded, and the
-    /// only functions are sine, cosine and the exponential, circular and hyperbolic.
+    /// only functions are the exponential, and sine and cosine, circular or hyperbolic.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -199,8 +199,8 @@ impl Graph {
         })
     }
 
-    /// Whether `is_one` holds for a node of the value that depends on one of the symbols; it is given the set
-    /// of those nodes.
+    /// Whether `is_one` holds for some node of the value that depends on one of the symbols; it is passed the
+    /// set of those nodes, too.
     fn finds<'g>(
         &'g self,
         value: Expr<'g>,

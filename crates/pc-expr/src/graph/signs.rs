@@ -29,7 +29,8 @@ impl Dag {
         }
     }
 
-    /// c + Σ q n, where every n with q > 0 is nonnegative, and c outweighs the other terms, whose |n| ≤ 1.
+    /// Whether c + Σ q n is known to be nonnegative: c outweighs the terms that may be negative, in which
+    /// the size of n is at most 1, and all other terms have q > 0 and a nonnegative n.
     fn is_sum_nonnegative(&self, constant: Number, terms: impl Iterator<Item = (NodeId, Number)>) -> bool {
         let mut least = constant;
         for (node, q) in terms {

@@ -12,8 +12,9 @@ use crate::graph::number::Number;
 
 /// Writes expressions of one graph in another, with symbols of the same names.
 ///
-/// The order of operands in a graph depends on what was built in it before, and with it the last digits of
-/// values. In an empty graph it depends only on the expressions and the order in which they are written.
+/// The order of operands in a graph, and with it the last digits of values, depends on what was built in
+/// the graph before. In an empty graph it depends only on the expressions and the order in which they are
+/// written.
 ///
 /// ```
 /// # use pc_expr::{Graph, Transcription};
@@ -30,16 +31,16 @@ pub struct Transcription<'g, 'n> {
 }
 
 impl<'g, 'n> Transcription<'g, 'n> {
-    /// From one graph to another.
+    /// A transcription from one graph to another.
     ///
     /// # Panics
-    /// If they are the same.
+    /// If both are the same graph.
     pub fn new(from: &'g Graph, to: &'n Graph) -> Transcription<'g, 'n> {
         assert!(!std::ptr::addr_eq(from, to), "two graphs");
         Transcription { from, to, written: RefCell::default() }
     }
 
-    /// The expression in the other graph; nodes [kept](Graph::keep) closed are also kept there.
+    /// The expression in the other graph; nodes [kept](Graph::keep) as units are also kept as units there.
     pub fn write(&self, x: Expr<'g>) -> Expr<'n> {
         let root = match x.atom_in(self.from) {
             constant @ Atom::Constant(_) => return self.to.expr(constant),
@@ -51,7 +52,7 @@ impl<'g, 'n> Transcription<'g, 'n> {
     }
 }
 
-/// Children first, in an order independent of their numbers.
+/// Writes a node, children first, in an order that does not depend on the indices of the nodes.
 fn write(source: &Dag, target: &mut Dag, root: NodeId, written: &mut FxHashMap<NodeId, Atom>) -> Atom {
     let mut open = vec![(root, false)];
     while let Some((node, children_done)) = open.pop() {

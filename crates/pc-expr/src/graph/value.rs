@@ -24,8 +24,8 @@ struct LinearTerm {
     m: i32,
 }
 
-/// An expression as a product of powers, each of a factor that is nonnegative wherever the root or logarithm
-/// of the whole is real, and of a remaining factor of unknown sign.
+/// An expression as a product: powers of factors that are nonnegative wherever the root or logarithm of the
+/// whole is real, and a remaining factor of unknown sign.
 struct PowerProduct {
     known: Vec<(Value, i32)>,
     rest: Option<Value>,
@@ -219,7 +219,7 @@ impl Dag {
         PowerProduct { known, rest }
     }
 
-    /// log u = Σ e log f over its powers; log √f = ½ log f and log e^f = f among them.
+    /// log u = Σ e log f over its powers; including log √f = ½ log f and log e^f = f.
     fn logarithm(&mut self, u: NodeId) -> Value {
         let (c, mut factors) = self.factors_of(u);
         let mut sum = Vec::new();

@@ -1,9 +1,9 @@
 //! Independent blocks of a matrix.
 
 /// The rows and columns of each block of a matrix that is block diagonal up to the order of its rows and
-/// columns, by their first row. `entries` holds the columns of the nonzero entries of each row; rows and
-/// columns without entries are in no block. The blocks of large matrices are often small, which shortens work
-/// on them.
+/// columns; the blocks are in the order of their first rows. `entries` holds the columns of the nonzero
+/// entries of each row; rows and columns without entries are in no block. The blocks of large matrices are
+/// often small, which shortens work on them.
 ///
 /// ```
 /// let blocks = pc_expr::independent_blocks(3, &[vec![2], vec![0], vec![], vec![2, 1]]);

@@ -16,12 +16,12 @@ use crate::identity::prime_field::Residue;
 #[derive(Clone, Debug)]
 pub struct ResidueEchelon {
     columns: usize,
-    /// The row that leads in this column.
+    /// The row whose leading column is this one.
     leading: Vec<Option<Vec<Residue>>>,
 }
 
 impl ResidueEchelon {
-    /// No rows yet, for this many columns.
+    /// An echelon form with this many columns and no rows yet.
     pub fn new(columns: usize) -> ResidueEchelon {
         ResidueEchelon { columns, leading: vec![None; columns] }
     }
@@ -31,7 +31,7 @@ impl ResidueEchelon {
         self.leading.iter().flatten().count()
     }
 
-    /// Adds a row, if it is independent of the present ones.
+    /// Adds a row if it is independent of the rows already present.
     ///
     /// # Panics
     /// If it has fewer entries than there are columns.
@@ -50,8 +50,8 @@ impl ResidueEchelon {
         }
     }
 
-    /// A basis of the vectors that all rows annihilate, one for each column that does not lead: 1 there and
-    /// 0 in the columns after it and in the others that do not lead.
+    /// A basis of the vectors that all rows annihilate, one for each non-leading column, with 1 in that
+    /// column and 0 in the columns after it and in the other non-leading columns.
     pub fn null_space(mut self) -> Vec<Vec<Residue>> {
         for column in (0..self.columns).rev() {
             let Some(known) = self.leading[column].take() else { continue };
@@ -73,7 +73,7 @@ impl ResidueEchelon {
     }
 }
 
-/// row ← row − row[column]·known, where known leads in the column.
+/// row ← row − row[column]·known, where `column` is the leading column of known.
 fn subtract(row: &mut [Residue], known: &[Residue], column: usize) {
     let factor = row[column];
     if factor == Residue::ZERO {

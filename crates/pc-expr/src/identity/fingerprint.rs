@@ -1,6 +1,6 @@
 //! Fingerprints: the value of a node at a random point of each of two prime fields, GF(2⁶¹−1) and GF(2⁶¹−45).
 //!
-//! Equal fingerprints mean equal as rational functions of the symbols, of e^{z/12} and of the points (cos
+//! Equal fingerprints mean equality as rational functions of the symbols, of e^{z/12} and of the points (cos
 //! z/12, sin z/12) of the circle, with an error probability of about 2⁻¹²⁰ times the degree (Schwartz 1980,
 //! Zippel 1979). There are two primes because constants are not random: in the first field 2⁶¹·x is x, while
 //! no two of our rationals agree in both. Roots, |x| and x^(p/q) obey the laws of their powers, and of
@@ -58,7 +58,7 @@ impl Fingerprint {
         self.0.is_canonical_sign()
     }
 
-    /// The same value for x and −x.
+    /// A value that is the same for x and −x.
     pub(crate) fn up_to_sign(self) -> Fingerprint {
         if self.has_canonical_sign() { self } else { self.negated() }
     }

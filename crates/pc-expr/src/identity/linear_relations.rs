@@ -1,8 +1,8 @@
 //! Linear relations with rational coefficients between expressions.
 //!
 //! A relation Σ a_j f_j = 0 holds at every point, so each random point of GF(2⁶¹ − 1) gives an equation for
-//! the a_j. Points are added until two in a row add no equation; the null space is then read back as fractions. This
-//! is a proposal: only relations that the graph itself folds to zero are returned.
+//! the a_j. Points are added until two in a row add no equation; the null space is then read back as fractions. The
+//! result is a proposal: only relations that the graph itself folds to zero are returned.
 
 use rustc_hash::FxHashMap;
 
@@ -25,10 +25,10 @@ impl Graph {
     /// positive. The last nonzero entry of each is in a column where all other vectors have zero, in
     /// ascending order: simple columns should come first.
     ///
-    /// Every relation is certified: Σ_j a_j f_ji folds to zero for each i, so that [`Folding::Structural`]
-    /// finds few. Some relations are missed: those whose coefficients, divided by the last, are not rational
-    /// or are p/q with p·q beyond about 2⁵⁰; those blurred by constants beyond the range of exact
-    /// [`Number`]s; and those invisible to fingerprints, as between logarithms.
+    /// Every relation is certified: Σ_j a_j f_ji folds to zero for each i, so that few are found with
+    /// [`Folding::Structural`]. Some relations are missed: those whose coefficients, divided by the last,
+    /// are not rational or are p/q with p·q beyond about 2⁵⁰; those blurred by constants beyond the range of
+    /// exact [`Number`]s; and those that fingerprints cannot see, such as relations between logarithms.
     ///
     /// # Panics
     /// If the columns have different lengths.
@@ -55,8 +55,8 @@ impl Graph {
     /// `constants` among the symbols of the columns: f_j = Σ_{i<j} a_ji f_i at almost all values, where the
     /// a_ji are functions of the `constants`.
     ///
-    /// Each comes with a_j1..a_j,j−1 as fractions, which are 0 for columns that are combinations themselves. They are a
-    /// proposal, and right only if the coefficients are rational numbers.
+    /// Each comes with a_j1..a_j,j−1 as fractions, which are 0 for columns that are combinations themselves. These
+    /// combinations are a proposal, which is right only if the coefficients are rational numbers.
     ///
     /// The other columns are certainly independent over the functions of the `constants`; a combination may
     /// be missed if a column contains rounded constants, or functions for which fingerprints know no
@@ -110,15 +110,15 @@ impl Graph {
 
 /// Expressions to be evaluated in GF(2⁶¹ − 1) at any number of points.
 ///
-/// The fingerprint of a symbol depends on its name: another point is another set of names. Sums and products
-/// are evaluated in the field; calls are written once more, with the other names, in a graph that is
-/// forgotten again.
+/// The fingerprint of a symbol depends on its name, so another set of names gives another point. Sums and
+/// products are evaluated in the field; calls are written once more, with the other names, in a graph that
+/// is then discarded.
 struct Sampler<'g> {
     graph: &'g Graph,
     outputs: Vec<Atom>,
     cone: Cone,
     symbols: Vec<Expr<'g>>,
-    /// Symbols that have one value at all points.
+    /// Symbols that have the same value at all points.
     constants: Vec<Expr<'g>>,
     calls: Vec<Expr<'g>>,
 }
@@ -261,7 +261,7 @@ mod tests {
         assert!(graph.linear_relations(&[vec![x], vec![x.sqrt()], vec![x.log()]]).is_empty());
     }
 
-    /// Circle and exponential keep their laws at every point.
+    /// The laws of the circle and of the exponential hold at every point.
     #[test]
     fn addition_theorems_are_relations() {
         let graph = Graph::new();

@@ -6,8 +6,8 @@ const SMALL: u64 = 1 << 20;
 /// An element of the field GF(p) of the prime p = 2⁶¹ − `C`, by default of Mersenne's prime 2⁶¹ − 1.
 ///
 /// Identities of rational numbers hold for their residues, unless p divides a denominator, and nothing is rounded. So
-/// a matrix of residues at a random point has the rank of the matrix of functions, except with a probability of its
-/// degree in p \[J. T. Schwartz, J. ACM 27 (1980) 701\].
+/// a matrix of residues at a random point has the rank of the matrix of functions, except with a probability of about
+/// its degree divided by p \[J. T. Schwartz, J. ACM 27 (1980) 701\].
 ///
 /// ```
 /// use pc_expr::{Number, Residue};
@@ -48,7 +48,7 @@ impl<const C: u64> Residue<C> {
         if value < 0 { -size } else { size }
     }
 
-    /// A finite f64 is the dyadic rational m·2^e, exactly.
+    /// The residue of a finite f64, which is exactly a dyadic rational m·2^e.
     pub(crate) fn dyadic(value: f64) -> Residue<C> {
         let bits = value.to_bits();
         let biased = ((bits >> 52) & 0x7ff) as i32;
@@ -71,7 +71,7 @@ impl<const C: u64> Residue<C> {
         result
     }
 
-    /// x^e for a signed exponent; 0 to a negative power is 0 (callers refuse zero divisors before).
+    /// x^e for a signed exponent; 0 to a negative power is 0 (callers reject zero divisors beforehand).
     pub(crate) fn powi(self, exponent: i32) -> Residue<C> {
         if exponent < 0 {
             self.inverse().pow(u64::from(exponent.unsigned_abs()))

@@ -1,7 +1,7 @@
 //! Linear algebra over fingerprints: results for almost all values of the symbols.
 //!
-//! Values may contain roots, whose products need their laws; elimination therefore differs from that of
-//! `echelon`.
+//! Values may contain roots, whose products obey laws of their own; elimination therefore differs from
+//! that of `echelon`.
 
 use crate::graph::expr::Expr;
 use crate::graph::graph::Graph;
@@ -28,7 +28,7 @@ impl Graph {
         blocks.iter().map(|(i, j)| self.rank_of_block(rows, i, j)).sum()
     }
 
-    /// The rank of some rows of a matrix whose entries all lie in some columns.
+    /// The rank of the given rows of a matrix, all of whose entries lie in the given columns.
     fn rank_of_block<'g>(
         &'g self,
         rows: &[Vec<(usize, Expr<'g>)>],

@@ -2,8 +2,8 @@
 //!
 //! A root is an unknown R with known R^q, as for √e and |e| (q = 2) and e^{1/q}. The powers R^k with k < q
 //! are kept separate and R^q is replaced by its value, which decides exactly the consequences of these laws:
-//! no sign is ever chosen, √(x²) is neither x nor −x. This holds while roots are few: beyond [`MOST_TERMS`] a
-//! value is just its number for random roots.
+//! no sign is ever chosen, √(x²) is neither x nor −x. This holds while there are few roots: beyond
+//! [`MOST_TERMS`] a value is only its fingerprint, with random roots.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use rustc_hash::FxHashMap;
 
 use crate::identity::fingerprint::Fingerprint;
 
-/// A value of more terms is no longer kept as a sum.
+/// A value with more terms than this is no longer kept as a sum.
 const MOST_TERMS: usize = 48;
 /// Products of sums with more terms than this in total are not multiplied out.
 const MOST_PRODUCTS: usize = 512;
@@ -125,7 +125,7 @@ impl Default for Roots {
 }
 
 impl Roots {
-    /// R^exponent of the root of that order with that value; `power` is R^order.
+    /// R^exponent, where R is the root of that order with that value; `power` gives R^order.
     pub(crate) fn root(
         &mut self,
         value: Fingerprint,
@@ -163,7 +163,7 @@ impl Roots {
         monomial
     }
 
-    /// The value of a sum whose terms may come in any order and several times.
+    /// The value of a sum whose terms may come in any order and more than once.
     fn sum(&self, terms: impl IntoIterator<Item = (Monomial, Fingerprint)>) -> Value {
         let mut terms: Vec<(Monomial, Fingerprint)> = terms.into_iter().collect();
         terms.sort_unstable_by_key(|&(m, _)| m);
@@ -286,7 +286,7 @@ impl Roots {
             terms.iter().flat_map(|&(m, _)| self.monomials[m.0 as usize].iter().map(|&(r, _)| r)).collect();
         roots.sort_unstable();
         roots.dedup();
-        // The youngest: the square of no other one holds it.
+        // The youngest root: it does not occur in the square of any other.
         let Some(&youngest) = roots.last() else { return plain };
         if roots.len() > MOST_CONJUGATES || self.roots[youngest as usize].order != 2 {
             return plain;

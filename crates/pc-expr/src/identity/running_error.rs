@@ -10,7 +10,8 @@ use crate::graph::evaluate::Scalar;
 use crate::graph::function::Function;
 use crate::graph::number::Number;
 
-/// The relative change of an argument that shows how a function magnifies errors: far above rounding.
+/// The relative change of an argument that shows how a function magnifies errors: far above the unit of
+/// rounding.
 const CHANGE: f64 = 1e-12;
 
 /// A number and its weight: the size of the terms of which it is the sum, so that its rounding error is of
@@ -35,7 +36,7 @@ pub struct Weighed {
     /// The number.
     pub value: f64,
     weight: f64,
-    /// Whether it is 0 only because its nonzero value was too small for a number, such as exp(−10⁶).
+    /// Whether it is 0 only because its nonzero value was too small to be represented, such as exp(−10⁶).
     lost: bool,
 }
 
@@ -61,7 +62,7 @@ impl Weighed {
         self.value.is_finite() && self.weight.is_finite()
     }
 
-    /// Whether it is a finite number that is 0 only where the exact one is.
+    /// Whether it is a finite number that is 0 only where the exact value is.
     pub fn is_known(self) -> bool {
         self.is_finite() && !self.lost
     }

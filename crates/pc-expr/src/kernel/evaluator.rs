@@ -18,8 +18,8 @@ pub enum Backend {
     Interpreter,
 }
 
-/// Maximum number of operations of machine code: longer code takes more time and memory to compile
-/// than it saves.
+/// Maximum number of operations for which machine code is made: longer code takes more time and memory
+/// to compile than it saves.
 #[cfg(feature = "jit")]
 const LONGEST_MACHINE_CODE: usize = 250_000;
 

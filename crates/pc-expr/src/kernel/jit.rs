@@ -1,9 +1,9 @@
 //! The compiling kernel: a program as machine code of the host, compiled by Cranelift at run time.
 //!
 //! A program becomes machine code in three steps, one file each: `plan` decides the order of
-//! computation and which values wait in memory, `emit` writes Cranelift's intermediate code, with
-//! sines and cosines inline by `sincos`, and `assembly` owns the resulting code. `host` describes
-//! the processor; `jit` is the kernel.
+//! computation and which values are kept in memory, `emit` writes Cranelift's intermediate code,
+//! with sines and cosines inline by `sincos`, and `assembly` owns the resulting code. `host`
+//! describes the processor; `jit` is the kernel.
 
 #![expect(
     unsafe_code,

@@ -9,11 +9,11 @@ use crate::program::program::{Instruction, Program, Register};
 
 /// The signature of compiled code: t, the state, the parameters, the outputs, scratch memory.
 ///
-/// The pointers lead to arrays of the lengths in the [`Program`], scratch of its required length; a
-/// pointer to an empty array is not read. Outputs and scratch must not overlap anything else: an
-/// output may be written before the last input is read. The code keeps no state, so any number of
-/// threads may run it at once, each with its own outputs and scratch. On x86-64, other vector code
-/// that returns without `vzeroupper` makes it many times slower.
+/// The pointers point to arrays of the lengths that the [`Program`] gives, and to scratch of its
+/// required length; a pointer to an empty array is not read. Outputs and scratch must not overlap
+/// anything else: an output may be written before the last input is read. The code keeps no state, so
+/// any number of threads may run it at once, each with its own outputs and scratch. On x86-64, other
+/// vector code that returns without `vzeroupper` makes it many times slower.
 pub type Entry = unsafe extern "C" fn(
     t: f64,
     state: *const f64,
@@ -33,7 +33,7 @@ pub trait Kernel: Send {
     fn fork(&self) -> Box<dyn Kernel>;
 
     /// The machine code, if there is any, for callers that manage memory themselves, and the length
-    /// of its scratch memory. Valid as long as this kernel or a fork of it.
+    /// of its scratch memory. Valid as long as this kernel or a fork of it exists.
     fn machine_code(&self) -> Option<(Entry, usize)> {
         None
     }
@@ -43,7 +43,7 @@ pub trait Kernel: Send {
 #[derive(Clone, Debug)]
 pub struct Interpreter {
     program: Arc<Program>,
-    /// None for a program that is too long for a tape or has fused operations.
+    /// `None` for a program that is too long for a tape or has fused operations.
     pub(super) tape: Option<Arc<Tape>>,
     registers: Vec<f64>,
 }

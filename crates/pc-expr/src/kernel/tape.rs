@@ -1,9 +1,9 @@
 //! A program in the form that is interpreted fastest: few steps, short indices, no bounds checks.
 //!
 //! Dispatching a step costs more than an operation. So products are computed by the step that adds
-//! or subtracts them, and a sum of products is one step, term after term in the order of the
-//! program; every operation is still rounded separately. Registers are an array of constant size,
-//! so that a 16-bit index masked to that size is always in bounds.
+//! or subtracts them, and a sum of products is one step, term by term in the order of the program;
+//! every operation is still rounded separately. Registers are an array of constant size, so that a
+//! 16-bit index masked to that size is always in bounds.
 
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};

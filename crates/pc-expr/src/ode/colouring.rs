@@ -1,4 +1,4 @@
-//! Columns that one product can separate.
+//! Columns of a matrix that can be found from one product.
 
 use crate::ode::pattern::Pattern;
 
@@ -14,8 +14,9 @@ pub struct Colouring {
 }
 
 impl Colouring {
-    /// Gives each column the first colour that none of its rivals has; columns with the most rivals come
-    /// first, and equal ones keep the order of the matrix.
+    /// Gives each column the first colour that none of its rivals, the columns that share a row with it,
+    /// has; columns with the most rivals come first, and those with equally many keep the order of the
+    /// matrix.
     pub(crate) fn of(pattern: &Pattern) -> Colouring {
         let rivals = rivals(pattern);
         let mut order: Vec<usize> = (0..pattern.columns()).collect();
@@ -39,7 +40,7 @@ impl Colouring {
         self.count
     }
 
-    /// Whether there is no column.
+    /// Whether there are no columns.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
@@ -62,7 +63,7 @@ impl Pattern {
     }
 }
 
-/// For each column the others that share a row with it.
+/// For each column, the other columns that share a row with it.
 fn rivals(pattern: &Pattern) -> Vec<Vec<usize>> {
     let mut columns_of_row: Vec<Vec<usize>> = vec![Vec::new(); pattern.rows()];
     for (i, j) in pattern.entries() {

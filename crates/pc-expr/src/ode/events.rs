@@ -6,8 +6,8 @@ use crate::forward;
 use crate::ode::failure::Failure;
 use crate::program::program::Program;
 
-/// The direction in which a function passes through zero along the integration: against time if the
-/// integration goes backwards.
+/// The direction in which a function passes through zero along the integration: backwards in time if
+/// the integration goes backwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Direction {
     /// From below.
@@ -20,7 +20,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// Whether a function that leaves the side of this sign passes through zero in this direction.
+    /// Whether a function that leaves the side with this sign passes through zero in this direction.
     pub fn leaves(self, side: f64) -> bool {
         match self {
             Direction::Rising => side < 0.0,
@@ -40,22 +40,22 @@ pub struct Event {
 }
 
 impl Event {
-    /// An event of either direction that changes nothing.
+    /// An event in either direction that changes nothing.
     pub fn new(name: impl Into<String>) -> Event {
         Event { name: name.into(), direction: Direction::Both, terminal: false, resets: false }
     }
 
-    /// The event with a direction.
+    /// This event with the given direction.
     pub fn direction(self, direction: Direction) -> Event {
         Event { direction, ..self }
     }
 
-    /// The event where its function rises through zero.
+    /// This event, only where its function rises through zero.
     pub fn rising(self) -> Event {
         self.direction(Direction::Rising)
     }
 
-    /// The event where its function falls through zero.
+    /// This event, only where its function falls through zero.
     pub fn falling(self) -> Event {
         self.direction(Direction::Falling)
     }
@@ -93,23 +93,23 @@ impl Event {
 
 /// Events of a motion: functions g(t, y), evaluated all at once, and resets y⁺ = R(t, y⁻).
 ///
-/// An event occurs where its function passes through zero in its direction: where it changes its sign, or
-/// reaches zero and stays there. A function that touches zero, and returns to its side within the resolution
-/// of time, causes none. A function that is zero at the start, or after its own reset, has to leave zero first. A
+/// An event occurs where its function passes through zero in its direction: where it changes sign, or reaches
+/// zero and stays there. A function that touches zero, and returns to its side within the resolution of time,
+/// causes no event. A function that is zero at the start, or after its own reset, has to leave zero first. A
 /// function that the reset of another event carries through zero in its direction, or to zero where it stays,
 /// makes its event occur at the same time; its own reset does not make an event occur again.
 pub trait Events {
     /// The events, in the order in which simultaneous ones are handled.
     fn events(&self) -> &[Event];
 
-    /// Writes g_i(t, y) to `values`, as many as there are events.
+    /// Writes g_i(t, y) to `values`, one for each event.
     ///
     /// # Errors
     /// [`Failure`] where one is not defined; it ends the integration.
     fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure>;
 
     /// The program whose outputs are the first functions, of (t, y) and parameters, with the values of these,
-    /// if there is one. Methods with the motion as a function of time find all their roots.
+    /// if there is one. Methods that have the motion as a function of time find all roots of these functions.
     fn program(&self) -> Option<(&Arc<Program>, &[f64])> {
         None
     }
@@ -178,7 +178,7 @@ pub trait Events {
         Err(Failure::fatal(NoDerivatives))
     }
 
-    /// Turns y⁻ into y⁺ at event number `event`; called only if that [resets](Event::resets).
+    /// Turns y⁻ into y⁺ at event number `event`; called only if that event [resets](Event::resets) the state.
     ///
     /// # Errors
     /// [`Failure`] where the new state is not defined; it ends the integration.

@@ -1,10 +1,10 @@
-//! Methods that another value has.
+//! Methods that are forwarded to another value.
 
-/// Methods of a trait, by their signatures, each of which calls that of the value before `=>`; with `@each` before it, that
-/// of `method` in `each!(self, method => …)`, a macro that looks for it.
+/// Defines methods of a trait, given by their signatures, each of which calls the same method of the value before `=>`;
+/// with `@each` before `=>`, that of `method` in `each!(self, method => …)`, a macro that finds the value.
 ///
-/// A wrapper of a field, of events or of a stepper has to forward methods that have a default, too: those that it forgets
-/// would say that the field has none of its properties.
+/// A wrapper of a field, of events or of a stepper has to forward methods that have a default, too: without them it would
+/// hide properties of what it wraps.
 ///
 /// ```
 /// use pc_expr::{Event, Events, Failure, forward};

@@ -13,11 +13,11 @@ pub struct LaneField {
     pub parameters: Vec<f64>,
     /// The conditions for regular states.
     pub watched: Watched,
-    /// Places in the state of quaternions, which are divided by their lengths at the end of each step.
+    /// The indices of quaternions in the state, which are divided by their lengths at the end of each step.
     pub unit_quaternions: Vec<[usize; 4]>,
 }
 
-/// The pivots that must not vanish: the smallest of those independent of the state, and the places of the
+/// The pivots that must not vanish: the smallest of those independent of the state, and the number of the
 /// others among the outputs of a [`LaneField`].
 ///
 /// A state is regular if each pivot is larger than `vanishing` times the largest of all sizes. Otherwise the
@@ -30,7 +30,7 @@ pub struct Watched {
     pub smallest: f64,
     /// The largest size independent of the state.
     pub largest: f64,
-    /// The ratio to the largest size below which a pivot vanishes.
+    /// A pivot counts as zero if it is below this fraction of the largest size.
     pub vanishing: f64,
 }
 

@@ -13,7 +13,7 @@ pub enum Method {
     /// tolerances of 1e-6 and below: the fastest if f is cheap.
     Dop853,
     /// Taylor's method of adaptive order and step, for non-stiff systems whose f is a program: the
-    /// fastest at tolerances of 1e-8 and below, and accurate to rounding.
+    /// fastest at tolerances of 1e-8 and below, and accurate to rounding error.
     Taylor,
     /// [`Dop853`](Method::Dop853) where the motion is not stiff, [`Bdf`](Method::Bdf) where
     /// stiffness is detected: the default method of a run.

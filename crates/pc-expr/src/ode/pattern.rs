@@ -1,7 +1,7 @@
 //! Zero patterns of matrices.
 
-/// The zero pattern of a matrix in compressed columns: the rows of the entries that may be nonzero, column after
-/// column, ascending in each.
+/// The zero pattern of a matrix in compressed columns: the rows of the entries that may be nonzero, column by
+/// column, in ascending order within each column.
 ///
 /// ```
 /// use pc_expr::Pattern;
@@ -67,7 +67,8 @@ impl Pattern {
         self.len() == self.rows * self.columns()
     }
 
-    /// Where the entries of each column start among all, and their number: columns + 1 numbers.
+    /// The index at which the entries of each column start, then the number of all entries: columns + 1
+    /// numbers.
     pub fn column_starts(&self) -> &[usize] {
         &self.starts
     }

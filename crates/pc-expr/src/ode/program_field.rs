@@ -37,7 +37,7 @@ pub struct ProgramField {
 }
 
 impl ProgramField {
-    /// f of a program, with values of its parameters.
+    /// The vector field of a program, with these values of its parameters.
     ///
     /// # Panics
     /// Unless there are as many outputs as components of the state, and as many values as parameters.

@@ -4,7 +4,8 @@ use std::fmt;
 
 /// A surface g(t, y, p) = 0 on which f jumps.
 ///
-/// Where a motion passes it, derivatives of the motion by p and y₀ also jump, if these move the passage:
+/// Where a motion passes it, derivatives of the motion with respect to p and y₀ also jump, if p and y₀ move
+/// the passage:
 ///
 ///   s⁺ = s⁻ + (f⁻ − f⁺) ∂τ,   ∂τ the derivative of the time τ of the passage,
 ///
@@ -17,7 +18,7 @@ pub struct RateJump {
     pub component: String,
     /// Whether g depends on the state.
     pub of_state: bool,
-    /// The parameters on which g depends, by their numbers, with their names.
+    /// The indices and names of the parameters on which g depends.
     pub parameters: Vec<(usize, String)>,
 }
 

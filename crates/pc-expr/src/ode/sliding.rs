@@ -7,9 +7,10 @@ use crate::ode::switching::Switching;
 const MOST_COMBINED: usize = 3;
 /// A pivot below this fraction of the largest entry of its row counts as zero.
 const SINGULAR: f64 = 1e-12;
-/// Equations that follow from others contradict them if they differ by more than this.
+/// Linearly dependent equations contradict each other if they differ by more than this.
 const CONTRADICTS: f64 = 1e-7;
-/// Relative difference from a sum of single changes above which f is not such a sum.
+/// f does not count as a sum of the changes at single surfaces if its relative difference from such a sum is
+/// larger than this.
 const ADDS_UP: f64 = 1e-9;
 /// Maximum number of steps of Newton's method.
 const MOST_STEPS: usize = 50;
@@ -25,16 +26,16 @@ const MOST_STEPS: usize = 50;
 /// ```
 /// [Alexander, Seidman, Houston J. Math. 24 (1998) 545], for more than three of them only if it is a sum of the changes
 /// at each surface. If dg/dt is the same on all sides, as for a force that jumps with a position, and vanishes, d²g/dt² =
-/// 0 takes its place: a body rests at the bottom of a groove. Of several σ with the same ẏ, the smallest are taken.
+/// 0 takes its place: a body rests at the bottom of a groove. If several σ give the same ẏ, the smallest are taken.
 #[derive(Clone, Debug)]
 pub struct Sliding {
-    /// The surfaces, ascending.
+    /// The surfaces, in ascending order.
     pub surfaces: Vec<usize>,
     /// σ of each.
     pub weights: Vec<f64>,
-    /// The change of dg/dt of each by its σ: negative where f leads back to it.
+    /// For each surface, the change of dg/dt with its σ: negative where f leads back to the surface.
     pub slopes: Vec<f64>,
-    /// The surfaces for which it is instead the change of d²g/dt², with dg/dt there.
+    /// For each surface where the slope is the change of d²g/dt² instead, the value of dg/dt there.
     pub resting: Vec<Option<f64>>,
     /// ẏ
     pub rates: Vec<f64>,
@@ -131,7 +132,8 @@ fn rate(
     Ok(normal.iter().zip(&rates).fold(by_time, |sum, (slope, rate)| sum + slope * rate))
 }
 
-/// The derivatives of dg/dt by time and state, above the surfaces whose sides are 0, as difference quotients.
+/// The derivatives of dg/dt with respect to time and state, above the surfaces whose sides are 0, as
+/// difference quotients.
 fn second_normal(
     field: &mut (impl Switching + ?Sized),
     surface: usize,
@@ -165,12 +167,12 @@ fn second_normal(
 enum Combination {
     /// f on each combination of sides; bit i of the index is set if surface i has side 1.
     Products(Vec<Vec<f64>>),
-    /// f at σ = 0, then the change by each σ.
+    /// f at σ = 0, then its change with each σ.
     Sum(Vec<f64>, Vec<Vec<f64>>),
 }
 
 impl Combination {
-    /// None if f has neither form.
+    /// `None` if f has neither form.
     fn of(
         field: &mut (impl Switching + ?Sized),
         (sides, surfaces): (&[f64], &[usize]),
@@ -236,7 +238,7 @@ impl Combination {
         }
     }
 
-    /// The change of f by each σ.
+    /// The change of f with each σ.
     fn changes(&self, weights: &[f64]) -> Vec<Vec<f64>> {
         match self {
             Combination::Sum(_, changes) => changes.clone(),
@@ -253,8 +255,8 @@ impl Combination {
         }
     }
 
-    /// The σ for which all g stay zero, by Newton's method, with the change of each dg/dt by its σ; none if they are
-    /// not determined.
+    /// The σ for which all g stay zero, by Newton's method, and the change of each dg/dt with its σ; `None` if the σ
+    /// are not determined.
     fn solve(&self, normals: &[(f64, Vec<f64>)]) -> Option<(Vec<f64>, Vec<f64>)> {
         let along = |i: usize, rates: &[f64]| -> f64 {
             normals[i].1.iter().zip(rates).map(|(slope, rate)| slope * rate).sum()
@@ -285,7 +287,8 @@ impl Combination {
     }
 }
 
-/// The smallest solution of linear equations, each row with its right side last; none if they contradict each other.
+/// The smallest solution of linear equations, each row ending with its right-hand side; `None` if they contradict
+/// each other.
 fn smallest(rows: &[Vec<f64>]) -> Option<Vec<f64>> {
     let m = rows.len();
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();

@@ -1,4 +1,4 @@
-//! Vector fields of several pieces.
+//! Piecewise vector fields.
 
 use std::sync::Arc;
 
@@ -18,8 +18,8 @@ pub trait Switching {
     /// The texts of the functions g.
     fn surfaces(&self) -> &[String];
 
-    /// Holds f and its derivatives on these sides, one for each surface, until told otherwise; without sides f is that
-    /// of the signs of g.
+    /// Holds f and its derivatives on these sides, one for each surface, until told otherwise; without sides, f is
+    /// given by the signs of g.
     fn hold(&mut self, sides: Option<&[f64]>);
 
     /// The sides on which f is held.
@@ -38,7 +38,7 @@ pub trait Switching {
     /// Returns ∂g/∂t of a surface, and writes ∂g/∂y.
     fn gradient(&mut self, surface: usize, t: f64, y: &[f64], by_state: &mut [f64]) -> f64;
 
-    /// ∂g/∂pⱼ of a surface; none if it was not derived.
+    /// ∂g/∂pⱼ of a surface; `None` if it was not derived.
     fn by_parameter(&mut self, surface: usize, parameter: usize, t: f64, y: &[f64]) -> Option<f64>;
 
     /// The explicit dependence of f on t while it is held.

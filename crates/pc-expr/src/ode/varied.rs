@@ -22,7 +22,7 @@ impl VariedSeries {
         &mut self.0.insert(kept).1
     }
 
-    /// Discards it, since the program changes.
+    /// Discards the series, since the program changes.
     pub fn forget(&mut self) {
         self.0 = None;
     }

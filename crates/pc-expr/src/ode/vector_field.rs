@@ -24,7 +24,7 @@ pub trait VectorField {
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure>;
 
     /// Whether [`rhs`](VectorField::rhs) fails where it would write a number that is not finite; if not,
-    /// integrators check each.
+    /// integrators check every number.
     fn checks_rates(&self) -> bool {
         false
     }
@@ -93,8 +93,8 @@ pub trait VectorField {
         Err(Failure::fatal(NoTransposedProduct))
     }
 
-    /// Number of parameters p of f that [`parameter_jacobian`](VectorField::parameter_jacobian)
-    /// differentiates by.
+    /// Number of parameters p of f with respect to which
+    /// [`parameter_jacobian`](VectorField::parameter_jacobian) differentiates.
     fn parameters_len(&self) -> usize {
         0
     }
@@ -134,15 +134,15 @@ pub trait VectorField {
         Ok(())
     }
 
-    /// The explicit dependence of f on t, which an integrator must not step over. It is queried when an
-    /// integration begins.
+    /// The explicit dependence of f on t, whose features an integrator must not step over. It is
+    /// queried when an integration begins.
     fn time_dependence(&self) -> TimeDependence {
         TimeDependence::Unknown
     }
 
-    /// The functions of the state in f that a step may pass over, with f [held](VectorField::switching) on one side
-    /// if possible; none if there are none, or if f does not reveal them. They are queried when an integration
-    /// begins.
+    /// The functions of the state in f whose rise and fall a step may miss, with f [held](VectorField::switching)
+    /// on one side if possible; `None` if there are no such functions, or if f does not expose them. They are
+    /// queried when an integration begins.
     fn steep_functions(&self) -> Option<SteepFunctions> {
         None
     }
@@ -155,7 +155,7 @@ pub trait VectorField {
         Err(Failure::fatal(NoSeries))
     }
 
-    /// Expands the motion through y at time t to an order, at least 1, on the branch of these
+    /// Expands the motion through y at time t to the given order, at least 1, on the branch of these
     /// [sides](TaylorSeries::expand). Coefficients need not be finite.
     ///
     /// # Errors
@@ -195,7 +195,8 @@ pub trait VectorField {
     }
 
     /// f as a program for many states at once, with the present parameters; `None` if f is more than a
-    /// program, is interpreted, has [steep functions](VectorField::steep_functions), or has a [projection](VectorField::has_projection) other than to unit quaternions.
+    /// program, if it is interpreted, or if it has [steep functions](VectorField::steep_functions) or a
+    /// [projection](VectorField::has_projection) other than to unit quaternions.
     fn lanes(&mut self) -> Option<LaneField> {
         None
     }
@@ -205,13 +206,13 @@ pub trait VectorField {
     fn restart(&mut self, _t: f64, _y: &[f64]) {}
 
     /// The times, in ascending order, at which f is not smooth in t, such as those of a table that it reads:
-    /// no step crosses one.
+    /// no step crosses such a time.
     fn breaks(&self) -> &[f64] {
         &[]
     }
 
-    /// Announces that the following evaluations are on the side of t, a start or a [break](VectorField::breaks),
-    /// towards `end`. Returns whether f jumped there, so that a multistep method has to restart.
+    /// Announces that the following evaluations are on the side of t towards `end`, where t is a start or a
+    /// [break](VectorField::breaks). Returns whether f jumped there, so that a multistep method has to restart.
     fn enter(&mut self, _t: f64, _end: f64) -> bool {
         false
     }
@@ -235,7 +236,7 @@ pub trait VectorField {
     }
 
     /// Checks whether one motion connects the times and states `from` and `to`, between which an integrator made a
-    /// step: a field may have places that no motion crosses.
+    /// step: a field may have barriers that no motion crosses.
     ///
     /// # Errors
     /// [`Failure`] if the second does not follow from the first.

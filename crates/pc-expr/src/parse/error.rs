@@ -5,7 +5,7 @@ use thiserror::Error;
 use crate::parse::syntax_tree::{MAX_DEPTH, Span};
 use crate::parse::vocabulary::{FUNCTIONS, Function};
 
-/// An error in the text of an expression, with its place.
+/// An error in the text of an expression, with its position.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{kind}")]
 pub struct ParseError {

@@ -14,7 +14,7 @@ use crate::parse::vocabulary::{FUNCTIONS, Function, OTHER_NAMES, continues_name,
 /// The syntax tree of one expression.
 ///
 /// # Errors
-/// The first part of the text that does not belong to an expression, with its span.
+/// For the first part of the text that cannot belong to an expression, with its span.
 pub fn parse(text: &str) -> Result<Ast, ParseError> {
     let mut parser = Parser {
         text,
@@ -76,10 +76,10 @@ type Parsed<T = Box<Ast>> = Result<T, Box<ParseError>>;
 struct Parser<'i> {
     text: &'i str,
     input: Input<'i>,
-    /// The next token and its place.
+    /// The next token and its position.
     token: Token<'i>,
     span: Span,
-    /// Place of the token before it.
+    /// Position of the token before it.
     last: Span,
     depth: usize,
 }
@@ -318,7 +318,7 @@ fn unknown_function(name: &str, span: Span) -> ParseError {
     ParseError { span, kind: ParseErrorKind::UnknownFunction { name, nearest } }
 }
 
-/// The text at `span`, cut to a length that fits a message.
+/// The text at `span`, cut to a length that fits into a message.
 fn excerpt(text: &str, span: Span) -> String {
     let whole = text.get(span.start..span.end).unwrap_or_default();
     match whole.char_indices().nth(40) {

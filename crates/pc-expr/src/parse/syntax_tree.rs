@@ -1,6 +1,6 @@
-//! The syntax tree of an expression, with the place of each part in the text.
+//! The syntax tree of an expression, with the position of each part in the text.
 
-/// Greatest nesting of parentheses, calls, exponents and unary minuses in one expression.
+/// Maximum nesting depth of parentheses, calls, exponents and unary minuses in one expression.
 pub const MAX_DEPTH: usize = 200;
 
 /// Byte range in the text of one expression.
@@ -12,10 +12,10 @@ pub struct Span {
     pub end: usize,
 }
 
-/// An expression as written, with its place in the text; parentheses around it belong to the span.
+/// An expression as written, with its position in the text; parentheses around it belong to the span.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ast {
-    /// Its place.
+    /// Its position.
     pub span: Span,
     /// Its kind.
     pub kind: AstKind,
@@ -53,7 +53,7 @@ pub enum Sign {
     Minus,
 }
 
-/// The side of the fraction bar on which a factor of a product is.
+/// The side of the fraction bar on which a factor of a product lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Factor {
     /// `*`

@@ -46,7 +46,8 @@ pub(super) const OTHER_NAMES: &[(&str, &str)] =
 /// Longest name, in bytes.
 const LONGEST_NAME: usize = 255;
 
-/// Whether `text` can be a name: a Latin or Greek letter or `_`, then letters, digits and `_`; of 255 bytes at most.
+/// Whether `text` can be a name: a Latin or Greek letter or `_`, then letters, digits and `_`; at most 255 bytes
+/// long.
 pub fn is_name(text: &str) -> bool {
     text.len() <= LONGEST_NAME && text.starts_with(starts_name) && text.chars().all(continues_name)
 }

@@ -44,8 +44,8 @@ fn letters(text: &str) -> String {
     format!("\\mathrm{{{spelt}}}")
 }
 
-/// A character as itself in mathematics mode: names of reactions contain those of constraints, which may be
-/// any text.
+/// The code that prints a character as itself in mathematics mode: names of reactions contain those of
+/// constraints, which may be any text.
 fn character(c: char) -> String {
     match c {
         '_' | '{' | '}' | '$' | '%' | '&' | '#' => format!("\\{c}"),
@@ -119,7 +119,7 @@ pub(super) fn power(base: &Piece, exponent: &str) -> String {
     }
 }
 
-/// The argument in brackets after a function, if another factor follows: \sin x y would be sin(x y).
+/// The argument in brackets after a function, if another factor follows: \sin x y would be read as sin(x y).
 fn closed(factor: &str) -> String {
     let bare = BARE.iter().find_map(|function| {
         let rest = factor.strip_prefix(function)?;
@@ -182,7 +182,7 @@ pub(super) fn juxtaposed(factors: &[String]) -> String {
     text
 }
 
-/// Whether each bracket in a text closes one that was opened in it.
+/// Whether the brackets in a text match each other.
 fn is_balanced(text: &str) -> bool {
     let mut depth = 0;
     for c in text.chars() {

@@ -12,7 +12,7 @@ pub(super) const PLUS: &str = "<mo>+</mo>";
 pub(super) const MINUS: &str = "<mo>−</mo>";
 /// Brackets that do not grow, so that a line may end between them.
 pub(super) const BRACKETS: [&str; 2] = ["<mo stretchy=\"false\">(</mo>", "<mo stretchy=\"false\">)</mo>"];
-/// The words of a sentence: before names, between a name and its meaning, and between two of them.
+/// The words of a sentence: before the names, between a name and its meaning, and between two such pairs.
 pub(super) const WORDS: [&str; 3] = ["<mtext> where </mtext>", "<mo>=</mo>", "<mo>,</mo>"];
 
 const APPLY: &str = "<mo>&#x2061;</mo>";
@@ -20,7 +20,7 @@ const TIMES: &str = "<mo>&#x2062;</mo>";
 /// Between a function and an argument without brackets.
 const BARE: &str = "<mo>&#x2061;</mo><mspace width=\"0.17em\"/>";
 
-/// Functions whose power is written at their names.
+/// Functions whose power is written after their names.
 const RAISED: [Function; 6] =
     [Function::Sin, Function::Cos, Function::Sinh, Function::Cosh, Function::Tanh, Function::Log];
 
@@ -210,7 +210,7 @@ fn is_call(factor: &str) -> bool {
     })
 }
 
-/// The name of a function, with its power, and its argument, if that is without brackets; calls inside the
+/// The name of a function, with its power, and its argument, if that has no brackets; calls inside the
 /// argument do not count.
 fn bare_call(factor: &str) -> Option<(&str, &str)> {
     let is_outermost = |before: &str| {

@@ -1,8 +1,8 @@
 //! Names for long or repeated parts of a page of expressions.
 //!
 //! Expressions share their parts, so that a page which writes all of them out may be as long as 2 to the
-//! power of their depth. Here such parts are named, each once, before their use: just enough for every
-//! piece between two signs to fit a line, and those that shorten the page.
+//! power of their depth. Here such parts are named, each once, before they are used: just enough of them
+//! for every piece between two signs to fit on a line, and any others that shorten the page.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -16,7 +16,7 @@ use crate::print::piece::Piece;
 use crate::print::style::Style;
 use crate::print::writer::{Writer, signed};
 
-/// Widths from which a repeated part is named; the one that gives the shortest page is taken.
+/// Least widths at which a repeated part is named; the one that gives the shortest page is taken.
 const WORTH_A_NAME: [usize; 7] = [usize::MAX, 80, 48, 32, 24, 16, 12];
 /// The cost of a name to its reader, in characters.
 const PRICE: usize = 24;
@@ -163,7 +163,7 @@ impl<'g> Names<'g> {
         Written { style, terms, pieces, named: names.collect() }
     }
 
-    /// One of the lines, followed by its names.
+    /// One of the lines, followed by the names and their meanings.
     pub(super) fn sentence(&self, line: Expr<'g>, style: Style) -> String {
         let written = self.written(style);
         let [wheres, equals, comma] = style.words();
@@ -178,7 +178,7 @@ impl<'g> Names<'g> {
     }
 }
 
-/// The text of lines, and of the meanings of the names on their page.
+/// The text of lines, together with the meanings of the names on the page.
 pub struct Written {
     style: Style,
     /// The terms of lines and of the meanings of names.
@@ -212,7 +212,7 @@ impl Written {
         }
     }
 
-    /// A name in a sentence: in a LaTeX sentence as text that can be read back.
+    /// A name for use in a sentence: in a LaTeX sentence it is text that can be read back.
     fn sentence_name(&self, name: &str) -> String {
         if self.style == Style::MathMl { self.name(name) } else { name.to_owned() }
     }
@@ -231,7 +231,7 @@ struct Page<'d, 'g> {
     lines: FxHashSet<NodeId>,
     factors: FxHashSet<Atom>,
     order: Vec<NodeId>,
-    /// How often each node occurs in those that are written.
+    /// How often each node occurs in the nodes that are written.
     uses: FxHashMap<NodeId, usize>,
     given: &'d FxHashMap<NodeId, &'d Given<'g>>,
     room: usize,
@@ -275,7 +275,7 @@ impl<'d, 'g> Page<'d, 'g> {
     }
 
     /// The named nodes: shorthands, parts that recur and have at least this width, and those needed to fit
-    /// the lines; only the last if there is no such width.
+    /// the lines; only the last of these if there is no such width.
     fn named(&self, least: Option<usize>) -> FxHashSet<NodeId> {
         let mut writer = Writer::new(self.dag, Style::Book);
         let mut named = FxHashSet::default();
@@ -305,7 +305,7 @@ impl<'d, 'g> Page<'d, 'g> {
         }
     }
 
-    /// Names the widest parts of a piece between two signs of a node, until it fits.
+    /// Names the widest parts of a piece between two signs of a node, until the piece fits.
     fn narrow(&self, writer: &mut Writer<'_>, node: NodeId, named: &mut FxHashSet<NodeId>) {
         let parts: Vec<NodeId> = match self.dag.node(node) {
             Node::Constant(_) | Node::Symbol(_) => return,

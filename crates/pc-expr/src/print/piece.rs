@@ -50,7 +50,8 @@ pub(crate) fn number(c: Number) -> Piece {
     Piece { text, binding }
 }
 
-/// The numerator and denominator of q if a number is the double nearest to q π, q > 0 a simple fraction.
+/// The numerator and denominator of q if a number is the double nearest to q π, where q > 0 is a simple
+/// fraction.
 pub(crate) fn multiple_of_pi(c: Number) -> Option<(i32, i32)> {
     let value = match c {
         Number::Scaled { .. } | Number::Real(_) => c.to_f64(),

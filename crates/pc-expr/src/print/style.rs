@@ -19,7 +19,7 @@ pub enum Style {
 }
 
 impl Style {
-    /// A piece, in brackets if it binds less tightly.
+    /// A piece, in brackets if it binds less tightly than required.
     pub(super) fn at_least(self, piece: Piece, binding: Binding) -> String {
         match self {
             Style::MathMl if piece.binding < binding => mathml::bracketed(&piece.text),
@@ -32,7 +32,7 @@ impl Style {
         if self == Style::MathMl { mathml::MINUS } else { "-" }
     }
 
-    /// The words of a sentence: before names, between a name and its meaning, and between two of them.
+    /// The words of a sentence: before the names, between a name and its meaning, and between two such pairs.
     pub(super) fn words(self) -> [&'static str; 3] {
         match self {
             Style::MathMl => mathml::WORDS,

@@ -9,9 +9,10 @@ use crate::print::names::{Names, Side};
 use crate::print::style::Style;
 use crate::print::writer::Writer;
 
-/// Expressions that take more operations when written out get names for their parts.
+/// Expressions that take more operations than this when written out get names for their parts.
 const LONG: u32 = 20_000;
-/// So do expressions whose parts have more bytes in total: nested parts add up to the square of the whole.
+/// So do expressions whose parts have more bytes than this in total: nested parts can add up to the square of
+/// the whole.
 const LARGE: usize = 16 << 20;
 /// The columns between two signs in such an expression.
 const ROOM: usize = 80;

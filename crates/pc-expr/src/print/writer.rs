@@ -41,7 +41,7 @@ impl<'d> Writer<'d> {
         self.named.insert(id);
     }
 
-    /// All pieces written.
+    /// All pieces that were written.
     pub(super) fn into_pieces(self) -> FxHashMap<NodeId, Piece> {
         self.pieces
     }
@@ -50,12 +50,12 @@ impl<'d> Writer<'d> {
         self.named.contains(&id)
     }
 
-    /// Bytes of a node as part of its parents.
+    /// Number of bytes of a node when it is part of its parents.
     pub(super) fn size(&self, id: NodeId) -> usize {
         self.pieces.get(&id).map_or(0, |piece| piece.text.len())
     }
 
-    /// Columns of a node as part of its parents.
+    /// Number of columns of a node when it is part of its parents.
     pub(super) fn columns(&self, id: NodeId) -> usize {
         self.pieces.get(&id).map_or(1, Piece::columns)
     }
@@ -87,8 +87,8 @@ impl<'d> Writer<'d> {
         }
     }
 
-    /// The terms of a line with marks on those that are subtracted, an added one first. A line may also end
-    /// between the terms inside a bracket.
+    /// The terms of a line with marks on those that are subtracted; a term that is added comes first. A
+    /// line may also end between the terms inside a bracket.
     pub(super) fn line(&self, id: NodeId) -> Vec<(bool, Piece)> {
         let (product, q) = match self.dag.node(id) {
             Node::Sum { constant, terms } => match *self.dag.terms(terms) {
@@ -190,7 +190,7 @@ impl<'d> Writer<'d> {
         Some(inside.into_iter().enumerate().map(term).collect())
     }
 
-    /// q x (a − b) with q < 0, written as −q x (b − a) if the bracket is in `to_turn`.
+    /// q x (a − b) with q < 0, written as −q x (b − a) if `to_turn` contains the bracket.
     fn turned(
         &self,
         node: NodeId,
@@ -229,7 +229,7 @@ impl<'d> Writer<'d> {
         Some(positive_first(signed))
     }
 
-    /// The sum that q·n is written as, if that is shorter.
+    /// The sum as which q·n is written, if that is shorter.
     pub(super) fn opened(&self, node: NodeId, q: Number) -> Option<(Number, &'d [(NodeId, Number)])> {
         match self.dag.node(node) {
             Node::Sum { constant, terms } if !self.named.contains(&node) => {
@@ -315,7 +315,7 @@ fn subtracts(constant: Number, terms: &[(NodeId, Number)]) -> bool {
     constant.is_negative() || terms.iter().any(|(_, q)| q.is_negative())
 }
 
-/// Whether it subtracts as many terms as it adds, so that its negative is no longer.
+/// Whether it subtracts as many terms as it adds, so that its negative is not longer.
 fn subtracts_most(constant: Number, terms: &[(NodeId, Number)]) -> bool {
     let signs = terms.iter().map(|&(_, q)| q).chain((!constant.is_zero()).then_some(constant));
     let (negative, positive): (Vec<Number>, Vec<Number>) = signs.partition(|q| q.is_negative());

@@ -5,7 +5,7 @@
 //!
 //!   cos(σa ± τb) = cos a cos b ∓ στ sin a sin b and so on.
 //!
-//! The rounding error is that of a shift of each angle by a unit in its last place.
+//! The rounding error is equivalent to a shift of each angle by a unit in its last place.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -20,7 +20,7 @@ pub(crate) type SignedAngle = (NodeId, bool);
 /// The sums ±a ± b whose sines and cosines are computed from those of a and b.
 pub(crate) type Compositions = FxHashMap<NodeId, [SignedAngle; 2]>;
 
-/// The compositions of a cone: of sums that share angles, all or none are composed.
+/// The compositions of a cone: of the sums that share angles, either all or none are composed.
 pub(crate) fn compositions(dag: &Dag, cone: &Cone) -> Compositions {
     let mut called = FxHashSet::default();
     let mut sums: Vec<(NodeId, [SignedAngle; 2])> = Vec::new();

@@ -13,10 +13,10 @@ enum Value {
 }
 
 impl Program {
-    /// The same program with these values of the parameters, which it no longer reads: operations on them
-    /// alone are computed here, and operations that become superfluous because a value is 0 or 1 are left
-    /// out. It takes no more operations, and its results are the same to the last bit where they are finite,
-    /// up to the sign of zero.
+    /// The same program with these values in place of the parameters, which it no longer reads: operations
+    /// on them alone are computed here, and operations that become superfluous because a value is 0 or 1 are
+    /// left out. It takes no more operations, and its results are the same to the last bit where they are
+    /// finite, up to the sign of zero.
     ///
     /// Substituting numbers into expressions before they become a program may make it shorter or longer:
     /// the normal form multiplies them into sums, so a sum that is computed once in the free program and

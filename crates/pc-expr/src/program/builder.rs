@@ -1,4 +1,4 @@
-//! Programs made instruction after instruction.
+//! Programs built instruction by instruction.
 
 use rustc_hash::FxHashMap;
 
@@ -26,7 +26,7 @@ impl Builder {
         self.value(Value::Constant(value.to_bits()))
     }
 
-    /// The input with an index: time, state, parameters.
+    /// The input with this index among time, state and parameters.
     pub(super) fn input(&mut self, place: usize) -> Register {
         self.value(Value::Input(place))
     }
@@ -45,7 +45,7 @@ impl Builder {
         }
     }
 
-    /// The constant in a register, if it is one.
+    /// The constant in a register, if it holds one.
     pub(super) fn constant_in(&self, register: Register) -> Option<f64> {
         match self.values[register.index()] {
             Value::Constant(bits) => Some(f64::from_bits(bits)),

@@ -4,8 +4,8 @@ use std::fmt::{self, Write};
 
 use crate::program::program::Program;
 
-/// A number for the text that is written to it, the same on every run and every machine (FNV-1a, 64 bits). It detects
-/// accidental differences, not deliberate ones.
+/// A number computed from the text that is written to it, the same in every run and on every machine (FNV-1a, 64
+/// bits). It detects accidental differences, not deliberate ones.
 ///
 /// ```
 /// use std::fmt::Write;

@@ -13,7 +13,8 @@ impl Program {
     /// takes as its parameters.
     ///
     /// A factor that depends on parameters alone goes into the terms of a sum, if each of them has such a factor already, and a
-    /// division by it becomes a multiplication by its inverse. So the outputs may differ by rounding from this program's.
+    /// division by it becomes a multiplication by its inverse. So the outputs may differ from this program's by rounding
+    /// errors.
     ///
     /// ```
     /// # use pc_expr::{Graph, Inputs, Program};
@@ -38,7 +39,7 @@ impl Program {
 enum Plan {
     /// The same operation on the new forms of its operands.
     Same,
-    /// The value of its operand, which receives the factor.
+    /// The value of the operand, which receives the factor.
     Operand(Register),
     /// A product with a factor.
     Scaled(Register, Register),
@@ -49,7 +50,7 @@ enum Plan {
 struct Factoring<'a> {
     program: &'a Program,
     first: Builder,
-    /// The fixed registers, in the first program.
+    /// The fixed registers, as registers of the first program.
     fixed: Vec<Option<Register>>,
     /// Whether a value can take a factor without a further operation.
     is_free: Vec<bool>,
@@ -167,7 +168,7 @@ struct Rest<'a> {
     second: Builder,
     /// The new forms of the registers that are not fixed.
     values: Vec<Register>,
-    /// Its parameters: registers of the first program, and their indices.
+    /// The parameters of the second program: registers of the first program, and their indices.
     numbers: Vec<Register>,
     places: FxHashMap<Register, usize>,
 }
@@ -212,7 +213,7 @@ impl<'a> Rest<'a> {
         }
     }
 
-    /// The new form of a register; for a fixed one, times a factor.
+    /// The new form of a register, multiplied by a factor if the register is fixed.
     fn read(&mut self, register: Register, factor: Option<Register>) -> Register {
         match (self.given.fixed[register.index()], factor) {
             (None, _) => self.values[register.index()],

@@ -9,7 +9,7 @@ use crate::program::program::{Instruction, Program, Register};
 pub struct Cost(BTreeMap<&'static str, usize>);
 
 impl Cost {
-    /// The sum over all kinds.
+    /// The number of operations of all kinds.
     pub fn total(&self) -> usize {
         self.0.values().sum()
     }
@@ -48,7 +48,8 @@ impl Program {
 
     /// The same program with every product that is used once, by a sum or difference, fused into it.
     ///
-    /// A fused operation rounds once instead of twice, so results may differ by rounding from this program's.
+    /// A fused operation rounds once instead of twice, so results may differ from this program's by rounding
+    /// errors.
     #[must_use]
     pub fn fused(&self) -> Program {
         let first = self.first_result();
@@ -93,7 +94,7 @@ impl Program {
     /// The program of only the first outputs.
     ///
     /// # Panics
-    /// If there are fewer than `outputs`.
+    /// If this program has fewer than `outputs` outputs.
     #[must_use]
     pub fn leading(&self, outputs: usize) -> Program {
         let mut program = self.clone();

@@ -84,8 +84,8 @@ impl Program {
         Some((first, second.with_code(self, &left, inputs)))
     }
 
-    /// This program with the instructions of `other` in these places; its outputs are given as registers of
-    /// `other`, and `input` maps the registers that they read from outside.
+    /// This program with those instructions of `other` that are at `places`; its outputs are given as
+    /// registers of `other`, and `input` maps the registers that they read from outside.
     fn with_code(
         mut self,
         other: &Program,

@@ -290,7 +290,7 @@ impl<'a> Lowering<'a> {
         sum.unwrap_or_else(|| self.constant(Number::ZERO))
     }
 
-    /// q·node, where q ≥ 0 only gives the sign if the node already contains its size.
+    /// q·node; if the node already contains the magnitude of q, q only gives the sign.
     fn scaled(&mut self, node: NodeId, q: Number) -> Register {
         let register = self.registers[&node];
         if q.is_one() || self.products.is_scaled(node) {

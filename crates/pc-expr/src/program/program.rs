@@ -158,7 +158,7 @@ impl Program {
         operands.chain(self.outputs.iter().copied()).any(is_state)
     }
 
-    /// The contents of a register as text, abbreviated where they are deep.
+    /// The contents of a register as text, abbreviated where they are deeply nested.
     pub fn describe(&self, register: Register) -> String {
         self.piece(register, 0).text
     }

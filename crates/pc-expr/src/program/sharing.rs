@@ -8,9 +8,9 @@ use crate::graph::dag::Dag;
 use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::subgraph::Cone;
 
-/// Products of more factors than this are not searched for pairs.
+/// Products with more factors than this are not searched for pairs.
 const LONG: usize = 32;
-/// The most rounds of pairing; deeper sharing is rare.
+/// The maximum number of rounds of pairing; deeper sharing is rare.
 const ROUNDS: usize = 8;
 
 /// Index of a factor.
@@ -22,7 +22,7 @@ pub(crate) struct FactorId(u32);
 pub(crate) enum Factor {
     /// n^e
     Power(NodeId, u32),
-    /// (1/n)^e, for a divisor that several products have
+    /// (1/n)^e, for a divisor that several products have in common
     Reciprocal(NodeId, u32),
     /// Two factors that several products have in common.
     Pair(FactorId, FactorId),
@@ -35,7 +35,7 @@ pub(crate) enum Factor {
 pub(crate) struct SharedProduct {
     pub(crate) factors: Vec<FactorId>,
     pub(crate) divisors: Vec<FactorId>,
-    /// Whether the factors contain the size of its coefficient in the only sum that uses it.
+    /// Whether the factors contain the magnitude of its coefficient in the only sum that uses it.
     pub(crate) scaled: bool,
 }
 
@@ -90,7 +90,7 @@ impl SharedProducts {
         shared
     }
 
-    /// Whether the node is a product that contains the size of its coefficient in a sum.
+    /// Whether the node is a product that contains the magnitude of its coefficient in a sum.
     pub(crate) fn is_scaled(&self, id: NodeId) -> bool {
         self.positions.get(&id).is_some_and(|&position| self.products[position].scaled)
     }
@@ -150,7 +150,7 @@ impl SharedProducts {
     }
 }
 
-/// The sizes of coefficients, by their bits, of nodes whose only use is in one sum.
+/// The magnitudes, as bits, of the coefficients of nodes that are used only in one sum.
 fn coefficients(dag: &Dag, cone: &Cone, outputs: &[Atom]) -> FxHashMap<NodeId, u64> {
     let mut uses: FxHashMap<NodeId, u32> = FxHashMap::default();
     for output in outputs {

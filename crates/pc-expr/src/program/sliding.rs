@@ -21,7 +21,7 @@ impl Program {
     /// ẏ = f̄ + Σ_i σ_i D_i,   D_i = (f(all above) − f(i below))/2,   f̄ = f(all above) − Σ_i D_i,
     /// Σ_j (n_i D_j) σ_j = −(g_t + n_i f̄),   n_i = ∂g_i/∂y
     /// ```
-    /// The outputs after ẏ are those of f above all surfaces.
+    /// The outputs after ẏ are those of f on the positive side of all surfaces.
     ///
     /// ```
     /// # use pc_expr::{Backend, Evaluator, Graph, Inputs, Normals, Program};
@@ -109,7 +109,8 @@ fn copy(writer: &mut Assembler, program: &Program, replaced: &[(usize, Register)
     program.outputs.iter().map(|output| places[output.index()]).collect()
 }
 
-/// The solution of linear equations, each row with its right side last, by elimination in the given order.
+/// The solution of linear equations, each row ending with its right-hand side, by elimination in the given
+/// order.
 fn solve(writer: &mut Assembler, mut rows: Vec<Vec<Register>>) -> Vec<Register> {
     let m = rows.len();
     for pivot in 0..m {

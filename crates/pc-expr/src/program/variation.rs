@@ -5,13 +5,14 @@ use crate::program::program::{Instruction, Program, Register};
 use crate::taylor::assembler::Assembler;
 
 impl Program {
-    /// The program of a motion with derivatives of it, from that of f, whose first outputs are ẏ, one for each component of
-    /// the state:
+    /// The program of a motion with its derivatives, made from that of f, whose first outputs are ẏ, one for each component
+    /// of the state:
     /// ```text
     /// ẏ = f(t, y, p),   ṡ_k = (∂f/∂y) s_k + ∂f/∂p_j
     /// ```
-    /// with a column s_k for each of `columns`, by the parameter of that number, or by a start value if there is none.
-    /// The state is (y, s_1, s_2, …), and so are the first outputs; after them come the other outputs of f.
+    /// with a column s_k for each of `columns`: a derivative with respect to the parameter of that number, or to a
+    /// start value if there is none. The state is (y, s_1, s_2, …), and the first outputs are its rates in the same
+    /// order; after them come the other outputs of f.
     ///
     /// ```
     /// # use pc_expr::{Backend, Evaluator, Graph, Inputs, Program};
@@ -66,9 +67,9 @@ impl Program {
 /// The derivatives of registers along one direction.
 struct Tangent<'a> {
     writer: &'a mut Assembler,
-    /// Where the values of the registers are.
+    /// The registers that hold the values.
     values: &'a [Register],
-    /// The derivatives so far; none if they are 0.
+    /// The derivatives so far; `None` for a derivative that is 0.
     slopes: Vec<Option<Register>>,
 }
 
@@ -222,7 +223,7 @@ impl Tangent<'_> {
         du.map(|slope| self.writer.multiply(factor, slope))
     }
 
-    /// The derivative of the argument that is chosen.
+    /// The derivative of the chosen argument.
     fn of_choice(&mut self, function: Function, [a, b, c]: [Register; 3]) -> Option<Register> {
         let (first, second) = match function {
             Function::Step => (self.slope(b), self.slope(c)),

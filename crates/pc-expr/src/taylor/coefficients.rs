@@ -9,7 +9,7 @@ use crate::kernel::evaluator::{Backend, compile};
 use crate::kernel::kernel::{Interpreter, Kernel};
 use crate::program::program::Program;
 
-/// The Taylor coefficients of solutions of ẏ = f(t, y), f the first outputs of a program.
+/// The Taylor coefficients of solutions of ẏ = f(t, y), where f is given by the first outputs of a program.
 ///
 /// ```
 /// use pc_expr::{Backend, Graph, Inputs, Program, TaylorSeries};
@@ -25,8 +25,8 @@ use crate::program::program::Program;
 /// # Ok::<(), pc_expr::ExprError>(())
 /// ```
 ///
-/// Where f contains |x|, sign, min, max or step, the series is that of one branch: of the side that each of the
-/// [branch functions](TaylorSeries::branches) is on. It is the motion until one of these changes its sign.
+/// Where f contains |x|, sign, min, max or step, the series is that of one branch, given by the sign of each of
+/// the [branch functions](TaylorSeries::branches). It is the motion until one of these changes sign.
 pub struct TaylorSeries {
     recurrences: Arc<Recurrences>,
     zeroth: Box<dyn Kernel>,
@@ -104,7 +104,7 @@ impl TaylorSeries {
         self.recurrences.dim
     }
 
-    /// The functions that keep their sign along the series, in words.
+    /// The functions that keep their sign along the series, as text.
     pub fn branches(&self) -> &[String] {
         &self.recurrences.branches
     }
@@ -113,7 +113,7 @@ impl TaylorSeries {
     /// [branch functions](TaylorSeries::branches) have the signs `sides`, each 1, −1 or 0.
     ///
     /// # Panics
-    /// If the order is 0, or if a slice does not have the length that belongs to it.
+    /// If the order is 0, or if a slice does not have the required length.
     pub fn expand(&mut self, t: f64, y: &[f64], sides: &[f64], parameters: &[f64], order: usize) {
         assert!(order >= 1, "an order above 0");
         if self.order < order {
@@ -153,7 +153,7 @@ impl TaylorSeries {
     /// y⁽ᵏ⁾/k! of the last [expansion](TaylorSeries::expand), k ≥ 1.
     ///
     /// # Panics
-    /// If k is 0 or above its order.
+    /// If k is 0 or above the order of that expansion.
     pub fn coefficients(&self, k: usize) -> &[f64] {
         let Layout { width, dim, .. } = self.layout();
         &self.row(k)[2 * width..][..dim]
@@ -162,7 +162,7 @@ impl TaylorSeries {
     /// Writes the coefficients of orders 1 to `order`, one after the other.
     ///
     /// # Panics
-    /// If that is above the order of the last expansion.
+    /// If `order` is above the order of the last expansion.
     pub fn copy_coefficients(&self, order: usize, coefficients: &mut [f64]) {
         assert!(order <= self.order, "an order of the expansion");
         let Layout { width, dim, .. } = self.layout();
@@ -175,11 +175,11 @@ impl TaylorSeries {
         }
     }
 
-    /// The coefficients of the [branch functions](TaylorSeries::branches), of an order below that of the last
+    /// The coefficients of the [branch functions](TaylorSeries::branches), of order k, below that of the last
     /// expansion.
     ///
     /// # Panics
-    /// If k is not below it.
+    /// If k is not below the order of the last expansion.
     pub fn branch_coefficients(&self, k: usize) -> &[f64] {
         let Layout { watched, branches, dim, width } = self.layout();
         match k {
@@ -193,8 +193,8 @@ impl TaylorSeries {
         &self.memory[self.begin..][..self.recurrences.watched]
     }
 
-    /// The time of an expansion to order p by machine code, roughly in nanoseconds: (a, b, c) of a + b p +
-    /// c p².
+    /// The coefficients (a, b, c) of a + b p + c p², roughly the time in nanoseconds of an expansion to
+    /// order p by machine code.
     pub fn cost(&self) -> [f64; 3] {
         let Recurrences { ref zeroth, ref next, sums, .. } = *self.recurrences;
         let vectors = (sums / LANES) as f64;
@@ -237,6 +237,6 @@ struct Layout {
     watched: usize,
     branches: usize,
     dim: usize,
-    /// Numbers of sums.
+    /// Number of sums.
     width: usize,
 }

@@ -176,7 +176,7 @@ impl Writer {
         }))
     }
 
-    /// a where the sign of `of` is not negative, else b.
+    /// a where the sign of `of` is nonnegative, else b.
     fn choose(&mut self, of: Term, a: Term, b: Term, name: impl Fn() -> String) -> Term {
         let side = self.side(of, name);
         let zero = self.zero.call(Function::Step, &[side, a.zero, b.zero]);

@@ -1,6 +1,7 @@
 //! The recurrences of all operations [Jorba, Zou 2005, prop. 2.1; Griewank, Walther 2008, tables 13.1 and 13.2].
 //!
-//! With S(u, v) = Σ_{j=1}^{k−1} u_j v_{k−j}, which needs lower orders only, and D u the series of j u_j:
+//! With S(u, v) = Σ_{j=1}^{k−1} u_j v_{k−j}, which needs lower orders only, and with D u for the series of j
+//! u_j:
 //! ```text
 //! w = u v          w_k = u₀ v_k + u_k v₀ + S(u, v)
 //! w = u/v          w_k = (u_k − w₀ v_k − S(v, w))/v₀
@@ -14,7 +15,7 @@
 //! w = arg(x + iy)  w_k = (x₀ y_k − y₀ x_k + (S(Dy, x) − S(Dx, y) − S(Dw, r²))/k)/r₀²
 //! ```
 //! All sums of one order are known before its coefficients are: they are computed together. Functions with
-//! corners or jumps are taken on the present branch, by a factor σ: |u| = σ u.
+//! corners or jumps are replaced by their present branch, with a factor σ: |u| = σ u.
 
 use std::sync::Arc;
 
@@ -31,16 +32,16 @@ pub(super) struct Recurrences {
     /// From (t, (y, σ), parameters): the watched outputs, the factors, the functions whose signs are σ, and
     /// ẏ.
     pub(super) zeroth: Arc<Program>,
-    /// From (1/k, (those of order k − 1 of ẏ, k, the coefficient of t, the error of the double 1/k, the
-    /// sums), factors): the coefficients of order k of the first and second factors of all sums, of y, of the
-    /// functions whose signs are σ, and of ẏ.
+    /// From (1/k, (the coefficients of order k − 1 of ẏ, k, the coefficient of t, the error of the double
+    /// 1/k, the sums), factors): the coefficients of order k of the first and second factors of all sums, of
+    /// y, of the functions whose signs are σ, and of ẏ.
     pub(super) next: Arc<Program>,
     pub(super) dim: usize,
     pub(super) watched: usize,
     pub(super) factors: usize,
     /// The number of sums, rounded up to whole vectors.
     pub(super) sums: usize,
-    /// The functions whose signs select the branch, in words.
+    /// The functions whose signs select the branch, as text.
     pub(super) branches: Vec<String>,
 }
 
@@ -187,8 +188,8 @@ impl Writer {
         self.next.multiply(order, u)
     }
 
-    /// x/k, by the double nearest to 1/k and its error: the rounding of 1/k, the same in every step, would
-    /// accumulate.
+    /// x/k, computed with the double nearest to 1/k and its error: the rounding of 1/k, the same in every
+    /// step, would accumulate.
     pub(super) fn over_order(&mut self, x: Register) -> Register {
         let lacking = self.next.multiply(x, Assembler::state(self.dim + 2));
         self.next.multiply_add(x, Assembler::time(), lacking)

@@ -14,10 +14,10 @@ use crate::time_profile::motion::PolynomialMotion;
 
 /// The shortest interval that is resolved, as a fraction of the whole.
 const RESOLVED: f64 = 1e-14;
-/// The most intervals examined: enough for hundreds of roots.
+/// The maximum number of intervals examined: enough for hundreds of roots.
 const MOST: usize = 4096;
-/// The most intervals of the shortest length in which a root is neither excluded nor single: where a function only
-/// touches zero, or is nothing but rounding.
+/// The maximum number of intervals of the shortest length in which a root is neither excluded nor single: where a
+/// function only touches zero, or is nothing but rounding error.
 const VAGUE: usize = 64;
 /// The number of intervals with a possible root after which the search ends: a search for the first root does
 /// not need them all.
@@ -44,7 +44,7 @@ const ENOUGH: usize = 32;
 #[derive(Clone, Debug)]
 pub struct RootSeparation {
     program: Arc<Program>,
-    /// The components that the outputs contain.
+    /// The components of the state that the outputs contain.
     used: Vec<bool>,
     /// The outputs whose roots do not matter.
     left_out: Vec<bool>,
@@ -92,8 +92,8 @@ impl RootSeparation {
         &self.program
     }
 
-    /// Appends places s, in order from the first to the last of these, between which each output has at most one root along the motion. The
-    /// last place is s = 1, unless many roots lie before it: then the places end where the next call begins. Returns whether the roots are
+    /// Appends points s, in order between `first` and `last`, between which each output has at most one root along the motion. The last
+    /// point is s = 1, unless many roots lie before it: then the points end where the next call begins. Returns whether the roots are
     /// separated: not those of a function that touches zero, or is zero up to rounding.
     ///
     /// # Panics
@@ -156,7 +156,7 @@ impl RootSeparation {
                 if a != first {
                     places.push(a);
                 }
-                // What is not told apart may be one touch in many intervals.
+                // Roots that are not separated may be one touch of zero that spans many intervals.
                 (run, roots) = (b, roots + usize::from(single));
                 vague += usize::from(!single);
             }
@@ -205,7 +205,7 @@ impl RootSeparation {
         (clear, single)
     }
 
-    /// Encloses time and state within a radius of a place.
+    /// Encloses time and state within a radius of the point s = `middle`.
     fn set_motion(&mut self, motion: PolynomialMotion<'_>, middle: f64, radius: f64) {
         let time = self.program.first_input();
         self.registers[time] = motion.time((middle, radius));

@@ -35,7 +35,7 @@ pub(crate) fn sums(rows: Rows<'_>, k: usize, out: &mut [f64]) {
     sums_by(rows, k, out, |a, b, sum| a * b + sum);
 }
 
-/// As [`sums`], with another way to add a product.
+/// As [`sums`], with a different way of adding a product.
 pub(crate) fn sums_by(rows: Rows<'_>, k: usize, out: &mut [f64], add: impl Fn(f64, f64, f64) -> f64) {
     let Rows { numbers, stride, sums: width } = rows;
     for (place, sums) in (0..width).step_by(LANES).zip(out.chunks_exact_mut(LANES)) {

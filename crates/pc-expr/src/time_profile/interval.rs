@@ -79,12 +79,12 @@ impl Interval {
         }
     }
 
-    /// The part that is not below `least`; at least a point.
+    /// The part that is not below `least`; a point if there is none.
     pub(crate) fn from(self, least: f64) -> Interval {
         Interval { lo: self.lo.max(least), hi: self.hi.max(least) }
     }
 
-    /// The part between two numbers; at least a point.
+    /// The part between two numbers; a point if there is none.
     pub(crate) fn within(self, least: f64, most: f64) -> Interval {
         Interval { lo: self.lo.clamp(least, most), hi: self.hi.clamp(least, most) }
     }
@@ -147,7 +147,7 @@ impl Interval {
     }
 }
 
-/// An interval by its computed ends; the whole line if one is NaN, such as ∞ − ∞.
+/// The interval with these computed ends; the whole line if one is NaN, such as ∞ − ∞.
 fn ends(lo: f64, hi: f64) -> Interval {
     Interval {
         lo: if lo.is_nan() { f64::NEG_INFINITY } else { lo },

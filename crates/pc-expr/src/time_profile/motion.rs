@@ -1,4 +1,4 @@
-//! Time and state along a polynomial motion, enclosed near a place.
+//! Time and state along a polynomial motion, enclosed near a point.
 
 use super::interval::Interval;
 use super::jet::Jet;
@@ -16,12 +16,12 @@ pub struct PolynomialMotion<'a> {
 }
 
 impl PolynomialMotion<'_> {
-    /// The time within `radius` of the place s = `middle`.
+    /// The time within `radius` of the point s = `middle`.
     pub(crate) fn time(self, (middle, radius): (f64, f64)) -> Jet {
         Jet::line(around(self.start + middle, radius), 1.0)
     }
 
-    /// Component `i` of `dim` within `radius` of the place s = `middle`: the polynomial is expanded there, in `local`.
+    /// Component `i` of `dim` within `radius` of the point s = `middle`: the polynomial is expanded there, in `local`.
     pub(crate) fn component(
         self,
         (i, dim): (usize, usize),

@@ -52,8 +52,8 @@ impl Watch {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Part {
     pub(crate) watched: Vec<Watch>,
-    /// Whether rises count as places: they do for functions that are multiplied by factors which may vanish where
-    /// they turn, and that enclosures do not show to bend.
+    /// Whether rises count as features: they do for functions that are multiplied by factors which may vanish
+    /// where the functions turn, and whose bends enclosures do not show.
     pub(crate) shows_rises: bool,
     code: Vec<(usize, Instruction)>,
     /// The functions that are currently watched, and the registers that lead to them.
@@ -65,7 +65,7 @@ pub(crate) struct Part {
     time: usize,
     /// The components of the state that are read.
     states: Vec<usize>,
-    /// Room for the polynomial of a component about a place.
+    /// Room for the polynomial of a component about a point.
     local: Vec<f64>,
 }
 
@@ -134,7 +134,7 @@ fn is_copy(instruction: &Instruction, motions: &[Motion]) -> bool {
     same_steepness && moving().count() == 1
 }
 
-/// Marks what instructions of marked registers read.
+/// Marks the registers that the instructions of marked registers read.
 fn spread(needed: &mut [bool], code: impl DoubleEndedIterator<Item = (usize, Instruction)>) {
     for (place, instruction) in code.rev() {
         if needed[place] {
@@ -180,7 +180,7 @@ impl Part {
         }
     }
 
-    /// From now on encloses only these of the watched functions; the others count as constants.
+    /// Encloses only these of the watched functions from now on; the others count as constants.
     pub(crate) fn attend_to(&mut self, functions: &[bool]) {
         self.attended.clear();
         self.attended.extend_from_slice(functions);

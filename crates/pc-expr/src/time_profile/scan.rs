@@ -7,10 +7,10 @@ use super::jet::Jet;
 use super::motion::PolynomialMotion;
 use super::part::Part;
 
-/// The pieces of a window over which the range of a function is first estimated.
+/// The number of pieces of a window over which the range of a function is first estimated.
 const PIECES: u32 = 32;
-/// A function that is neither monotonic on a piece nor bends one way may vary there by this fraction of its
-/// range without closer examination.
+/// A function that on a piece neither is monotonic nor bends only one way may vary there by this fraction
+/// of its range without closer examination.
 const FLAT: f64 = 1.0 / 64.0;
 /// The same for a function with one of the two properties: it has one turn or one inflection there.
 const TURN: f64 = 0.25;
@@ -18,21 +18,21 @@ const TURN: f64 = 0.25;
 const RISE: f64 = 2.0 / PIECES as f64;
 /// Turns and inflections within this fraction of the range from the last one do not count.
 const SWING: f64 = 1e-3;
-/// The rounding of a value, with a margin.
+/// The rounding error of a value, with a margin.
 const ROUNDING: f64 = 1e-12;
 /// The shortest piece, as a fraction of a window.
 const SHORTEST: f64 = 1e-13;
-/// The most evaluations in one query.
+/// The maximum number of evaluations in one query.
 const MOST: u32 = 20_000;
 /// If this many of the shortest pieces contain no jump, the function turns faster than floating-point
 /// times resolve: finding a jump takes some forty evaluations.
 const NOISE: u32 = MOST / 4;
 
-/// A place where a function of time changes its behaviour.
+/// A time at which a function of time changes its behaviour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Feature {
     pub(crate) t: f64,
-    /// Number of the function among those watched.
+    /// Index of the function among those watched.
     pub(crate) function: usize,
     pub(crate) kind: Kind,
 }
@@ -54,7 +54,7 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    /// The kind if rises do not count as places.
+    /// The kind, if rises do not count as features.
     fn without_rises(self) -> Kind {
         if let Kind::Rise(_) = self { Kind::Unsure } else { self }
     }
@@ -103,7 +103,7 @@ impl Sign {
 /// later windows, since there is one at each step.
 #[derive(Clone, Debug)]
 pub(crate) struct Scan {
-    /// From where the features are kept.
+    /// The time from which features are kept.
     from: f64,
     end: f64,
     shortest: f64,
@@ -188,7 +188,8 @@ impl Scan {
     }
 
     /// Forgets the features up to `t` and finds those up to `to`, or as far as the allowed evaluations reach;
-    /// beyond, pieces are not halved if that is `enough`. Returns the time up to which features are known.
+    /// with `enough`, pieces beyond that are no longer halved. Returns the time up to which features are
+    /// known.
     pub(crate) fn between(
         &mut self,
         part: &mut Part,
@@ -239,7 +240,7 @@ impl Scan {
 }
 
 impl Track {
-    /// Whether a sign is unknown up to a place, so that a later one may reveal an earlier change; signs up to
+    /// Whether a sign is unknown up to a time, so that a later sign may reveal an earlier change; signs up to
     /// a sharp feature are settled.
     fn is_open(&self, place: f64) -> bool {
         self.sharp != Some(place) && (self.rate.until != place || self.bend.until != place)

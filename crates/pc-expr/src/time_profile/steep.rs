@@ -26,17 +26,17 @@ const CHANGE: f64 = 0.5;
 enum Kind {
     /// It keeps its size, or only rises or falls: an exponential has no plateau.
     Exponential,
-    /// The divisor, in this register, keeps its size, or only rises or falls far from the least that it can be. A
+    /// The divisor, in this register, keeps its size, or only rises or falls far from its least possible value. A
     /// dividend does not matter: it is not hidden, or is one of these functions itself.
     Reciprocal { divisor: usize, least: f64 },
     /// It hardly changes.
     Bounded,
-    /// There is no such evidence: a function of time and state.
+    /// There is no such evidence for a function of time and state.
     Moving,
 }
 
 impl Kind {
-    /// What is watched of the function in a register.
+    /// The value that is watched for the function in a register.
     fn watch(self, place: usize) -> Watch {
         match self {
             Kind::Reciprocal { divisor, .. } => Watch::Reciprocal(divisor),
@@ -60,7 +60,7 @@ impl Kind {
     }
 }
 
-/// The functions of the state in a vector field that a step may pass over, followed along a motion.
+/// The functions of the state in a vector field whose rise and fall a step may miss, followed along a motion.
 ///
 /// ```
 /// use pc_expr::{Graph, Inputs, PolynomialMotion, Program, SteepFunctions};
@@ -89,7 +89,7 @@ pub struct SteepFunctions {
 
 impl SteepFunctions {
     /// The steep functions of rates computed by these programs, whose states begin with `dim` components of y, for
-    /// these values of the parameters; none if there are none.
+    /// these values of the parameters; `None` if there are no such functions.
     pub fn of(programs: &[&Program], dim: usize, parameters: &[f64]) -> Option<SteepFunctions> {
         let followed = |program: &&Program| Followed::of(program, dim, parameters);
         let parts: Vec<Followed> = programs.iter().filter_map(followed).collect();
@@ -97,7 +97,7 @@ impl SteepFunctions {
         (!parts.is_empty()).then_some(SteepFunctions { parts, dim, origin: 0.0, room, times })
     }
 
-    /// Whether a program has such functions of time and state that are too long to be followed.
+    /// Whether a program has steep functions of time and state that are too long to be followed.
     pub(crate) fn are_too_long(program: &Program, dim: usize) -> bool {
         let motions = motions(program);
         let moving = steep(program, &[], &motions).filter(|&(_, kind)| kind == Kind::Moving);
@@ -118,7 +118,8 @@ impl SteepFunctions {
         SteepFunctions { dim: len, ..self }
     }
 
-    /// Those that depend only on the first `len` components of the state; none if there are none.
+    /// The functions among these that depend only on the first `len` components of the state; `None` if there
+    /// are none.
     #[must_use]
     pub fn of_components(mut self, len: usize) -> Option<SteepFunctions> {
         self.parts.retain(|followed| followed.watched.part.reads_only(len));
@@ -173,12 +174,12 @@ impl SteepFunctions {
 struct Followed {
     watched: Watched,
     kinds: Vec<Kind>,
-    /// Which of them may hide something where they were last examined.
+    /// Which functions may hide something where they were last examined.
     loud: Vec<bool>,
 }
 
 impl Followed {
-    /// None if there are none, or if they are too long.
+    /// `None` if there are no such functions, or if they are too long.
     fn of(program: &Program, dim: usize, parameters: &[f64]) -> Option<Followed> {
         let motions = motions(program);
         let steep = steep(program, parameters, &motions).map(|(place, kind)| (kind.watch(place), kind));

@@ -4,7 +4,7 @@ use super::motion::PolynomialMotion;
 use super::part::Part;
 use super::scan::{Feature, Kind, Scan};
 
-/// The most features of a function that count as few.
+/// The maximum number of features of a function that count as few.
 const FEW: usize = 32;
 
 /// Times of features that are invisible at the two ends of an interval, in order.
@@ -21,7 +21,7 @@ pub struct Surprises {
 }
 
 impl Surprises {
-    /// Puts the times in their order, counted from `origin`.
+    /// Sorts the times, which are then counted from `origin`.
     pub(crate) fn arrange(&mut self, direction: f64, origin: f64) {
         for times in [&mut self.few, &mut self.many] {
             times.sort_unstable_by(|a, b| ((a - b) * direction).total_cmp(&0.0));
@@ -94,7 +94,7 @@ fn choose<'a>(
 }
 
 impl Kind {
-    /// Whether it is certain, in an interval of this length.
+    /// Whether a feature of this kind is certain, in an interval of this length.
     fn is_place(self, length: f64) -> bool {
         match self {
             Kind::Sharp | Kind::Turn | Kind::Bend(_) => true,

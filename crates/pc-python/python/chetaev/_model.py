@@ -58,14 +58,14 @@ def _state(at: str, hold: Sequence[str], cyclic: str | None) -> dict[str, Any]:
 class Model:
     """A mechanical system, written as a text.
 
-    A model never changes. It can be pickled, and is equal to another one of the same text.
+    A model never changes. It can be pickled, and equals another model with the same name and text.
 
     Parameters
     ----------
     text : str or bytes
-        The text, as ``docs/model-format.md`` explains it.
+        The text, in the format that ``docs/model-format.md`` explains.
     name : str
-        What it is called in messages; paths of tables in it are relative to the directory of that name.
+        The name used in messages; paths of tables in the text are relative to its directory.
 
     Raises
     ------
@@ -81,7 +81,7 @@ class Model:
 
     @classmethod
     def from_text(cls, text: str, name: str = "<text>") -> Model:
-        """The model of a text."""
+        """The model that a text describes."""
         return cls(text, name)
 
     @classmethod
@@ -92,9 +92,9 @@ class Model:
 
     @classmethod
     def from_urdf(cls, path: str | os.PathLike[str], *, floating: bool = False) -> Model:
-        """The model of a robot in URDF, macros expanded: links are bodies on joints.
+        """The model of a robot in URDF with macros expanded: links become bodies on joints.
 
-        Its text, which names what was left out in warnings, can be written to a file and edited
+        Warnings name what was left out. The text of the model can be written to a file and edited
         further.
 
         Parameters
@@ -102,12 +102,12 @@ class Model:
         path : path
             The file.
         floating : bool
-            Whether the root link moves freely; it stands still otherwise.
+            Whether the root link moves freely; otherwise it is fixed.
 
         Raises
         ------
         ChetaevError
-            With the place in the file, if something in it is wrong.
+            If something in the file is wrong; the error gives the position in the file.
         """
         with open(path, encoding="utf-8") as file:
             text, left_out = _native.text_of_urdf(os.fspath(path), file.read(), floating)
@@ -136,12 +136,12 @@ class Model:
 
     @classmethod
     def builder(cls, name: str = "model") -> Builder[Model]:
-        """A model to be put together call by call."""
+        """A builder, which puts a model together call by call."""
         return Builder(name, cls.from_text)
 
     @property
     def name(self) -> str:
-        """What it is called in messages."""
+        """The name of the model in messages."""
         return self._core.name
 
     @property
@@ -151,12 +151,12 @@ class Model:
 
     @property
     def title(self) -> str:
-        """The name given in the text, else that of the file."""
+        """The name given in the text, or else the name of the file."""
         return self._core.title
 
     @property
     def parameters(self) -> Mapping[str, float]:
-        """The parameters, then the inputs, with their values."""
+        """The parameters, followed by the inputs, with their values."""
         return MappingProxyType(dict(self._core.parameters()))
 
     @property
@@ -176,11 +176,11 @@ class Model:
 
     @property
     def simulation(self) -> Mapping[str, Any]:
-        """The settings of a run in the text; None for those it does not have."""
+        """The settings of a run in the text; None for those that it does not give."""
         return MappingProxyType(self._core.simulation())
 
     def check(self, **settings: Any) -> Check:
-        """What can be said of the model before it is run: rank, closure, constraints, what is conserved, what is stable.
+        """What can be said about the model before it is run: rank, closure, constraints, what is conserved, what is stable.
 
         The equations are compared with a second derivation.
 
@@ -207,9 +207,9 @@ class Model:
         ----------
         form : str, optional
             ``"poincare"``, ``"canonical"``, ``"lagrange"``, ``"voronets"``, ``"reduced"``, ``"lie-poisson"``, ``"orthonormal"`` or
-            ``"hamel"``; else that of the text, else Poincaré's.
+            ``"hamel"``; the form in the text unless given, or else Poincaré's.
         width : int
-            Columns of a line.
+            Number of columns of a line.
         inline : bool
             Whether definitions of the model are written out.
         **settings
@@ -224,7 +224,7 @@ class Model:
         return Equations(self, self._form(form), width, inline, settings)
 
     def _rewritten(self, text: str) -> Model:
-        """The model of another text, whose tables are beside the same file."""
+        """The model of another text, with paths of tables relative to the same file."""
         return Model(text, self.name)
 
     def _changed(self, settings: Mapping[str, Any]) -> _native.ModelCore:
@@ -239,9 +239,9 @@ class Model:
         Parameters
         ----------
         degree : int
-            The largest degree in the velocities of the integrals sought.
+            The highest degree in the velocities of the integrals sought.
         functions : sequence of expressions
-            Functions of the place by which their coefficients may be multiplied.
+            Functions of the position by which the coefficients of integrals may be multiplied.
         **settings
             As for :meth:`system`.
         """
@@ -263,15 +263,15 @@ class Model:
         Parameters
         ----------
         path : path
-            The file to write, whose name is that of the model.
+            The file to write, whose name becomes that of the model.
         form : str, optional
             ``"poincare"``, ``"reduced"``, ``"orthonormal"`` or ``"hamel"``.
         version : int
-            2 or 3, of FMI.
+            The version of FMI, 2 or 3.
         solver : str, optional
-            How it integrates by itself: ``"dop853"``, ``"radau5"`` (stiff), or ``"rk4"`` with fixed steps of the length ``step``.
+            How it integrates on its own: ``"dop853"``, ``"radau5"`` (stiff), or ``"rk4"`` with fixed steps of the length ``step``.
         compiled : bool
-            Whether it has a binary for this machine, which takes a C compiler, beside the sources.
+            Whether it has a binary for this machine beside the sources, which requires a C compiler.
         **settings
             As for :meth:`system`.
         """
@@ -289,7 +289,7 @@ class Model:
         cyclic: str | None = None,
         **settings: Any,
     ) -> Linearization:
-        """The motions near a state to first order: matrices, eigenvalues and modes, as in ``pc linearize``.
+        """The motions near a state, to first order: matrices, eigenvalues and modes, as in ``pc linearize``.
 
         Parameters
         ----------
@@ -297,9 +297,9 @@ class Model:
             The state: ``"steady"``, the equilibrium or steady motion near the start; ``"rest"``, an equilibrium near it with all
             quasi-velocities 0; or ``"start"``, the start as it is.
         hold : sequence of str
-            Components of the state that keep their start values while a steady state is looked for.
+            Components of the state that keep their start values while a steady state is sought.
         cyclic : str, optional
-            ``"keep"`` cyclic coordinates that rest, or ``"drop"`` all; by default they are kept at
+            ``"keep"`` cyclic coordinates that are at rest, or ``"drop"`` all; by default they are kept at
             an equilibrium and dropped for a motion.
         **settings
             As for :meth:`system`.
@@ -307,7 +307,7 @@ class Model:
         Raises
         ------
         ChetaevError
-            Where there is no such state.
+            If there is no such state.
 
         Examples
         --------
@@ -347,10 +347,10 @@ class Model:
         Parameters
         ----------
         box : mapping, optional
-            Lower and upper bounds of coordinates and first-order states; else a turn about the start for angles, and 2 (1 + |start|) to
-            both sides for others.
+            Lower and upper bounds of coordinates and first-order states; by default a full turn about the start for angles, and
+            2 (1 + |start|) to both sides for others.
         starts : int
-            Number of starts of Newton's method.
+            Number of points from which Newton's method starts.
         **settings
             As for :meth:`system`.
 
@@ -369,14 +369,14 @@ class Model:
         Parameters
         ----------
         form : str, optional
-            ``"poincare"``, ``"canonical"``, ``"reduced"``, ``"lie-poisson"``, ``"orthonormal"`` or ``"hamel"``; else that of the text,
-            else Poincaré's.
+            ``"poincare"``, ``"canonical"``, ``"reduced"``, ``"lie-poisson"``, ``"orthonormal"`` or ``"hamel"``; the form in the
+            text unless given, or else Poincaré's.
         parameters, start : mapping, optional
-            Values other than those of the text; they can be set later too.
+            Values that replace those of the text; they can also be set later.
         project_start : bool
-            Whether the start is moved onto the constraints, where ``hold`` names what is not to be moved.
+            Whether the start is moved onto the constraints; ``hold`` names the components that must not be moved.
         project : sequence of str
-            Integrals, or ``"energy"``, at whose values at the start the motion is kept.
+            Integrals, or ``"energy"``, that the motion is made to keep at their values at the start.
         velocities : mapping, optional
             Quasi-velocities of the form ``"hamel"``, each with its definition.
         independent : sequence of str
@@ -384,7 +384,7 @@ class Model:
         reactions : bool
             Whether the reactions of constraints are columns of motions.
         limit_memory, limit_time : optional
-            Bytes of expressions, and seconds of one derivation.
+            Limits on the bytes of expressions, and on the seconds of one derivation.
         verify : bool
             Whether the equations are compared with a second derivation, at the start and near it; where the two disagree,
             :class:`DisagreementError` is raised.

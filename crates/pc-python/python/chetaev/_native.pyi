@@ -1,4 +1,4 @@
-"""The native part of the package; the rest of the package shapes what it returns."""
+"""The native part of the package, whose results the rest of the package presents to users."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, TypedDict, final

@@ -1,4 +1,4 @@
-"""What results know of the models, systems and motions that they come from."""
+"""What results know about the models, systems and motions from which they come."""
 
 from __future__ import annotations
 

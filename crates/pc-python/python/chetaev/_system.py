@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 
 class System(_native.SystemCore):
-    """ẏ = f(t, y) of a model, compiled, with values of parameters and start that can be set.
+    """The compiled equations ẏ = f(t, y) of a model, with parameters and start values that can be set.
 
-    ``system(t, y)`` is ẏ, and ``system.jac(t, y)`` its Jacobian, as :func:`scipy.integrate.solve_ivp` takes them. Where ``y`` is an array
-    of n × N numbers, a state in each column, so are the results, computed without the lock of the interpreter; ``t`` is a
-    number then, or N of them. Any number of threads may use a system at once. It can be pickled.
+    ``system(t, y)`` is ẏ, and ``system.jac(t, y)`` its Jacobian, as :func:`scipy.integrate.solve_ivp` takes them. If ``y`` is an array
+    of n × N numbers, a state in each column, so are the results, computed without holding the lock of the interpreter; ``t`` is a
+    single number then, or N of them. Any number of threads may use a system at once. It can be pickled.
 
     It is made by :meth:`Model.system`.
 
@@ -102,7 +102,7 @@ class System(_native.SystemCore):
 
     @property
     def parameters(self) -> Values:
-        """The parameters, then the inputs, to be read and set.
+        """The parameters, followed by the inputs, which can be read and set.
 
         Examples
         --------
@@ -114,7 +114,7 @@ class System(_native.SystemCore):
 
     @property
     def start(self) -> Values:
-        """The start values, to be read and set."""
+        """The start values, which can be read and set."""
         return Values(self, "start")
 
     def settings(self) -> dict[str, Any]:
@@ -132,7 +132,7 @@ class System(_native.SystemCore):
         self._settings["start"].update(start)
 
     def observe(self, t: npt.ArrayLike, y: npt.ArrayLike) -> dict[str, Any]:
-        """All columns of a motion at a state, or at each of an array of them.
+        """All columns of a motion at a state, or at each state of an array.
 
         Examples
         --------
@@ -143,7 +143,7 @@ class System(_native.SystemCore):
         return dict(zip(self.column_names, self.row(t, y)))
 
     def mass_matrix(self, t: float, y: npt.ArrayLike) -> Floats:
-        """The mass matrix M = ∂²L/∂η∂η of the quasi-velocities of a state."""
+        """The mass matrix M = ∂²L/∂η∂η of the quasi-velocities at a state."""
         import numpy as np
 
         size, entries = self.mass_entries(float(t), np.asarray(y, dtype=float).tolist())
@@ -152,8 +152,10 @@ class System(_native.SystemCore):
     def reactions(self, t: npt.ArrayLike, y: npt.ArrayLike) -> dict[str, Any]:
         """The reaction of each constraint, by its name.
 
-        Together they add to the force Q_s the sum of each times the derivative of its constraint with
-        respect to η_s. """ if not self._model.constraints:
+        They add to the force Q_s the sum, over the constraints, of the reaction times the derivative of the constraint with
+        respect to η_s.
+        """
+        if not self._model.constraints:
             return {}
         system = self
         if not self._settings.get("reactions"):
@@ -242,17 +244,17 @@ class System(_native.SystemCore):
     ) -> Motion:
         """Integrates the motion from the start.
 
-        What is not given comes from the text, else from the defaults of ``pc run``: the numbers are those of that program, bit
-        by bit. Ctrl-C ends it.
+        What is not given comes from the text, or else from the defaults of ``pc run``: the numbers equal those of that program
+        bit for bit. Ctrl-C ends the integration.
 
         Parameters
         ----------
         t_end : float, optional
-            The end of time.
+            The time at which the motion ends.
         samples : int, optional
-            Number of rows, evenly spaced, start and end included.
+            Number of rows, evenly spaced in time, including start and end.
         times : array, optional
-            The times of the rows instead.
+            The times of the rows, instead of a number of rows.
         y0 : array, optional
             The state at the start, n numbers in the order of ``names``, instead of that of the system; it has to satisfy the
             constraints.
@@ -261,25 +263,25 @@ class System(_native.SystemCore):
         rtol : float, optional
             Relative tolerance of a step.
         atol : float or mapping, optional
-            Absolute tolerance of a step: of all components of the state, or of some by their names. Else it is that of the text,
-            else min(1e-12, rtol s) for a component of the scale s at the start, where rounding leaves as much.
+            Absolute tolerance of a step: of all components of the state, or of some by name. Unless given it is that of the text,
+            or else min(1e-12, rtol s) for a component of the scale s at the start, where rounding errors permit this.
         max_step : float, optional
-            The largest length of a step.
+            The maximum length of a step.
         events : mapping, optional
-            Events beside those of the text: names with expressions that vanish, or with an :class:`Event`. The model is
+            Events in addition to those of the text: names with expressions that vanish, or with an :class:`Event`. The model is
             derived once more.
         samples_per_step, accumulation : optional
-            How events are looked for, as in ``[simulation]``.
+            How events are searched for, as in ``[simulation]``.
         sensitivities : sequence of str
-            Parameters by which the motion is differentiated: columns ``∂x/∂p``.
+            Parameters with respect to which the motion is differentiated; they add columns ``∂x/∂p``.
         estimate : bool
             Whether there are columns ``error(x)`` with the estimated global errors of the others: the distance from a second, more
             accurate motion.
         limit_time : float, optional
-            Seconds after which it ends with an error.
+            Seconds after which the integration ends with an error.
         verify : bool, optional
             Whether the motion is compared with a second derivation at its start and its end; the first motion of a system is
-            unless given, and none of a system with ``verify=False``.
+            compared unless given, and none of a system with ``verify=False``.
 
         Returns
         -------
@@ -288,10 +290,10 @@ class System(_native.SystemCore):
         Raises
         ------
         IntegrationError
-            Where the integration cannot go on, or the motion has lost an integral that it is proved to keep; its ``motion`` is
-            what was reached.
+            If the integration cannot continue, or the motion has lost an integral that it is proved to keep; its ``motion`` is
+            the part that was computed.
         DisagreementError
-            Where the second derivation gives another motion.
+            If the second derivation gives a different motion.
 
         Examples
         --------
@@ -348,8 +350,8 @@ class System(_native.SystemCore):
     def stepper(self, **settings: Any) -> Stepper:
         """The motion from the start, step by step under inputs that a controller chooses.
 
-        A step takes some microseconds. Events of the text occur in it, with their resets. The equations are those of the
-        system that were compared with the second derivation; steps are not compared again.
+        A step takes some microseconds. Events of the text occur during steps, with their resets. The equations are those of the
+        system, which have been compared with the second derivation; steps are not compared again.
 
         Parameters
         ----------
@@ -380,9 +382,9 @@ class System(_native.SystemCore):
         progress: bool = False,
         **settings: Any,
     ) -> Sweep:
-        """Integrates many motions, over parameters and start values, on all cores.
+        """Integrates many motions, for varied parameters and start values, on all cores.
 
-        The result does not depend on the number of threads. Ctrl-C ends it.
+        The result does not depend on the number of threads. Ctrl-C ends the sweep.
 
         Parameters
         ----------
@@ -392,15 +394,15 @@ class System(_native.SystemCore):
             Names with distributions instead: ``("normal", mean, deviation)``, ``("uniform", from, to)`` or
             ``("lognormal", mean, deviation)`` of the logarithm, the numbers of ``pc sweep --random`` with the same seed.
         members : int, optional
-            How many are drawn.
+            How many members are drawn.
         seed : int
-            The seed of what is drawn.
+            The seed of the random numbers.
         t_end : float, optional
-            The end of time, else that of the text.
+            The time at which the motions end; the one in the text unless given.
         rows : int, optional
-            Rows of each motion, evenly spaced; the last one alone unless given.
+            Number of rows of each motion, evenly spaced in time; only the last one unless given.
         threads : int, optional
-            Threads, as many as cores unless given.
+            Number of threads, as many as there are cores unless given.
         progress : bool
             Whether to show progress, with tqdm where it is installed.
         **settings
@@ -424,11 +426,11 @@ class System(_native.SystemCore):
         Parameters
         ----------
         count : int
-            How many.
+            How many exponents.
         interval : float
             The time after which tangent vectors are made orthonormal again.
         intervals, transient : int
-            How many intervals are counted, and how many before them are not.
+            How many intervals are counted, and how many before these are skipped.
         **settings
             ``method``, ``rtol``, ``atol`` as for :meth:`run`.
         """
@@ -440,7 +442,7 @@ class System(_native.SystemCore):
         return Lyapunov(np.array(exponents), np.array(history).reshape(-1, count))
 
     def report(self, motion: Motion | None = None) -> Page:
-        """One page with all that is known of the model, and with a motion where one is given."""
+        """A page with all that is known about the model, and about a motion if one is given."""
         return Page(self.report_page(None if motion is None else motion._recorded()), height=800)
 
 

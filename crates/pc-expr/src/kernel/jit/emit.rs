@@ -79,7 +79,7 @@ fn call_all(
 #[derive(Clone, Copy)]
 enum Home {
     None,
-    /// A number of the scratch memory.
+    /// A slot of the scratch memory.
     Slot(u32),
     /// An output.
     Output(u32),
@@ -87,15 +87,15 @@ enum Home {
 
 /// The values of the program's registers while the steps are emitted.
 struct Values {
-    /// The values held in machine registers, by the plan.
+    /// The values held in machine registers, as planned.
     live: Vec<Option<Value>>,
     /// The number of operands read so far.
     read: usize,
     home: Vec<Home>,
     free: Vec<u32>,
     slots: u32,
-    /// Outputs that are results, as linked lists: by register the first output, and by output the
-    /// next one of the same register.
+    /// Outputs that are results, as linked lists: for each register its first output, and for each
+    /// output the next one of the same register.
     first_output: Vec<u32>,
     next_output: Vec<u32>,
 }
@@ -234,7 +234,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// Notes the result of a step, and stores it if it is an output or is needed from memory.
+    /// Records the result of a step, and stores it if it is an output or will be read from memory.
     fn set(&mut self, register: Register, value: Value) {
         let r = register.index();
         self.values.live[r] = Some(value);
@@ -351,7 +351,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// `value`, or NaN if one of x, y is.
+    /// `value`, or NaN if x or y is NaN.
     fn unless_unordered(&mut self, x: Value, y: Value, value: Value) -> Value {
         let nan = self.number(f64::NAN);
         let unordered = self.b.ins().fcmp(FloatCC::Unordered, x, y);

@@ -48,8 +48,8 @@ impl Host {
         self.fma
     }
 
-    /// The address of the routine by [`compile_far`](super::sincos::compile_far), on processors
-    /// with fused multiply-add.
+    /// The address of the routine compiled by [`compile_far`](super::sincos::compile_far), on
+    /// processors with fused multiply-add.
     pub(super) fn far_circle(&self) -> usize {
         self.far_circle.as_ref().map_or(0, Code::address)
     }

@@ -73,7 +73,7 @@ impl Jit {
     }
 
     /// The address of the code, for callers that manage memory themselves; valid as long as this
-    /// kernel or a clone of it.
+    /// kernel or a clone of it exists.
     pub fn entry(&self) -> Entry {
         self.code.entry()
     }

@@ -1,10 +1,11 @@
 //! The order of computation, and which values stay in memory.
 //!
-//! Straight-line code of thousands of operations does not fit sixteen registers, and register
+//! Straight-line code of thousands of operations does not fit into sixteen registers, and register
 //! allocators spill it badly. So the order is chosen here: depth first from the outputs, the
-//! operand that needs more registers first. So are the values that stay in memory: whenever there
-//! are too many for the registers, the one whose next use is furthest away (Belady, IBM Systems
-//! Journal 5 (1966) 78), which for straight-line code minimises the number of loads.
+//! operand that needs more registers first. The values that stay in memory are also chosen here:
+//! whenever there are too many for the registers, the one whose next use is furthest away goes to
+//! memory (Belady, IBM Systems Journal 5 (1966) 78), which for straight-line code minimises the
+//! number of loads.
 
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};
@@ -13,7 +14,7 @@ use super::options::JitOptions;
 
 /// Programs with more instructions than this are divided into several functions.
 const WHOLE: usize = 50_000;
-/// Number of following circles among which a partner is sought.
+/// Number of following circles among which a partner is sought for a circle.
 const PARTNERS: usize = 8;
 
 /// The sine and the cosine of an argument, as far as they are needed.
@@ -65,14 +66,14 @@ impl Step {
     }
 }
 
-/// The steps of a program and the places of their values.
+/// The steps of a program, and where their values are kept.
 pub(super) struct Plan {
     pub(super) steps: Vec<Step>,
-    /// By register: the last step that reads it.
+    /// For each register, the last step that reads it.
     pub(super) last_use: Vec<u32>,
-    /// By register: whether it is needed again after leaving the machine registers.
+    /// For each register, whether it is needed again after leaving the machine registers.
     pub(super) waits: Vec<bool>,
-    /// By operand, in the order of the steps.
+    /// For each operand, in the order of the steps.
     pub(super) stays: Vec<Stay>,
     /// Number of steps in a function.
     pub(super) chunk: usize,
@@ -81,13 +82,13 @@ pub(super) struct Plan {
 /// Whether an operand is in a machine register before and after its use.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stay {
-    /// Whether it is there before.
+    /// Whether it is in a machine register before its use.
     pub(super) held: bool,
-    /// Whether it is not kept for a further use.
+    /// Whether it is no longer kept there after its use.
     pub(super) dies: bool,
 }
 
-/// The value that stands for no further use.
+/// The number that means no further use.
 const NEVER: u32 = u32::MAX;
 
 impl Plan {
@@ -140,13 +141,13 @@ impl Plan {
 
 /// The next uses of values.
 struct NextUses {
-    /// By register: the first step that reads it.
+    /// For each register, the first step that reads it.
     at_start: Vec<u32>,
-    /// By operand, in the order of the steps.
+    /// For each operand, in the order of the steps.
     after_operand: Vec<u32>,
-    /// By result, in the order of the steps.
+    /// For each result, in the order of the steps.
     after_result: Vec<u32>,
-    /// By register: the last step that uses it.
+    /// For each register, the last step that uses it.
     last_use: Vec<u32>,
 }
 
@@ -178,9 +179,9 @@ impl NextUses {
 struct MachineRegisters {
     room: usize,
     values: Vec<usize>,
-    /// By register of the program: its next use, if it is held.
+    /// For each register of the program, its next use, if it is held.
     next: Vec<u32>,
-    /// By register of the program: the step and the operand of its last reading.
+    /// For each register of the program, the step and the operand that last read it.
     read_at: Vec<usize>,
     read_last: Vec<usize>,
 }

@@ -1,7 +1,7 @@
 //! Inline sines and cosines, two arguments in the two lanes of a vector.
 //!
 //! With n the integer nearest to 2x/π, r = x − nπ/2 lies in [−π/4, π/4]; sin r and cos r are
-//! polynomials of r (those of the Cephes library), and n mod 4 determines which of them, with which
+//! polynomials in r (those of the Cephes library), and n mod 4 determines which of them, with which
 //! sign, is the sine of x and which the cosine.
 //!
 //! For |x| ≤ [`RANGE`] the errors stay below 2 units in the last place: π/2 is the sum of
@@ -153,7 +153,7 @@ impl Lanes<'_, '_> {
         })
     }
 
-    /// Σ cᵢ zⁱ, in pairs so that few operations depend on each other.
+    /// Σ cᵢ zⁱ, evaluated in pairs so that few operations depend on each other.
     fn polynomial(&mut self, c: &[f64; 6], z: Value, z2: Value, z4: Value) -> Value {
         let [c0, c1, c2, c3, c4, c5] = c.map(|c| self.number(c));
         let low = self.b.ins().fma(c1, z, c0);

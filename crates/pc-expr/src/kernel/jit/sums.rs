@@ -9,8 +9,8 @@ use crate::taylor::sums::{Rows, sums, sums_by};
 /// Writes Σ_{j=1}^{k−1} a_j b_{k−j} for all sums.
 pub(crate) type Sums = fn(Rows<'_>, usize, &mut [f64]);
 
-/// The fastest implementation on this processor. The results do not depend on the width of vectors,
-/// to the last bit.
+/// The fastest implementation on this processor. The results are the same, to the last bit, for every
+/// width of vectors.
 pub(crate) fn fastest() -> Sums {
     #[cfg(target_arch = "x86_64")]
     {

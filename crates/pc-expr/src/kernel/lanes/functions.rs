@@ -64,7 +64,7 @@ impl LaneTape {
         self.binary(Binary::And, a, rest)
     }
 
-    /// The function of its arguments, the first of these three.
+    /// The value of the function, whose arguments are the first of these three.
     pub(super) fn function(&mut self, function: Function, arguments: [LaneValue; 3]) -> LaneValue {
         let [x, y, z] = arguments;
         let zero = self.constant(0.0);
@@ -197,7 +197,7 @@ impl LaneTape {
         self.multiply(power, factors[1])
     }
 
-    /// log x = k log 2 + log (1 + f), 1 + f in [√½, √2), by s = f/(2 + f) as in fdlibm.
+    /// log x = k log 2 + log (1 + f), 1 + f in [√½, √2), with s = f/(2 + f) as in fdlibm.
     fn log(&mut self, x: LaneValue) -> LaneValue {
         let one = self.constant(1.0);
         let shift = self.bits(1.0f64.to_bits() - ROOT_OF_HALF);
@@ -240,7 +240,7 @@ impl LaneTape {
         self.near((Function::Log, x), (x, most), value)
     }
 
-    /// Σ cᵢ zⁱ, in pairs so that few operations depend on each other.
+    /// Σ cᵢ zⁱ, evaluated in pairs so that few operations depend on each other.
     fn six(&mut self, c: &[f64; 6], z: LaneValue, z2: LaneValue, z4: LaneValue) -> LaneValue {
         let [c0, c1, c2, c3, c4, c5] = c.map(|c| self.constant(c));
         let low = self.multiply_add(c1, z, c0);

@@ -10,8 +10,8 @@ use super::tape::{LANES, LaneTape, Lanes};
 
 /// A [`LaneTape`] that can be run, by machine code if it is available for this processor.
 ///
-/// The results of a lane depend only on its own inputs, bit for bit the same beside any other lanes
-/// and on any processor; only functions that are not computed inline depend on the system's
+/// The results of a lane depend only on its own inputs, bit for bit the same whatever the other lanes
+/// hold and on any processor; only functions that are not computed inline depend on the system's
 /// library. (The bits of a NaN may differ.) Clones share the code.
 #[derive(Clone, Debug)]
 pub struct LaneKernel {
@@ -22,7 +22,7 @@ pub struct LaneKernel {
 }
 
 impl LaneKernel {
-    /// With the fastest instructions of this processor for which memory can be allocated.
+    /// A kernel with the fastest instructions of this processor for which memory can be allocated.
     pub fn new(tape: LaneTape) -> LaneKernel {
         let tape = Arc::new(tape);
         let mut kernels =
@@ -30,7 +30,7 @@ impl LaneKernel {
         kernels.next().unwrap_or_else(|| unreachable!("the last needs nothing"))
     }
 
-    /// With these instructions; none if this processor lacks them, or memory cannot be allocated.
+    /// A kernel with these instructions; `None` if this processor lacks them, or memory cannot be allocated.
     pub fn with_instructions(tape: LaneTape, set: InstructionSet) -> Option<LaneKernel> {
         LaneKernel::of(Arc::new(tape), set)
     }
@@ -57,7 +57,7 @@ impl LaneKernel {
         self.set
     }
 
-    /// Bytes of machine code.
+    /// Number of bytes of machine code.
     pub fn code_len(&self) -> usize {
         #[cfg(all(feature = "jit", target_arch = "x86_64", unix))]
         return self.code.as_ref().map_or(0, |code| code.len());

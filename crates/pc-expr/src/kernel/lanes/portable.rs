@@ -13,8 +13,8 @@ impl LaneTape {
         self.nodes.len()
     }
 
-    /// Computes the lanes from `first` on, [`CHUNK`] of them, in a frame; `room` is for
-    /// intermediate values.
+    /// Computes the lanes from `first` on, [`CHUNK`] of them, in a frame; `room` holds intermediate
+    /// values.
     pub(super) fn walk(&self, frame: &mut [Lanes], room: &mut [Lanes], first: usize) {
         debug_assert!(first.is_multiple_of(CHUNK) && first + CHUNK <= LANES);
         let read = |rows: &[Lanes], row: usize| -> Chunk { std::array::from_fn(|i| rows[row].0[first + i]) };

@@ -1,7 +1,7 @@
 //! Operations on eight numbers at once; each lane is an independent computation.
 //!
-//! The results of all operations are determined to the last bit: the four of arithmetic, square
-//! roots and fused multiply-add, each rounded once; comparisons, and operations on the bits.
+//! The results of all operations are determined to the last bit: the four arithmetic operations,
+//! square roots and fused multiply-add, each rounded once; comparisons, and operations on the bits.
 //! Functions are composed of them in the same way for every kernel. So the result of a lane depends
 //! only on its own inputs: neither on the other lanes nor on the instructions of the processor.
 

@@ -1,4 +1,4 @@
-"""A model put together call by call: it is written as a text, so that there is one meaning."""
+"""A model put together call by call: it is written as a text, so that texts alone define its meaning."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _SECTIONS = (
 
 
 class Builder(Generic[M]):
-    """A model in the making.
+    """A model that is put together call by call.
 
     Expressions are texts in the language of models, numbers, expressions of this package, expressions of SymPy, or Python functions
     of names of the model. All methods return the builder, so that calls can be chained.
@@ -48,7 +48,7 @@ class Builder(Generic[M]):
     name : str
         The name of the model.
     model_of : callable
-        Makes the model of a text and a name; :meth:`Model.builder` passes it.
+        Makes the model from a text and a name; :meth:`Model.builder` passes it.
 
     Examples
     --------
@@ -123,7 +123,7 @@ class Builder(Generic[M]):
         return self._put("inputs", (name, "interpolation"), quoted(interpolation))
 
     def define(self, name: str, value: Any) -> Builder[M]:
-        """A name for an expression, to be used below."""
+        """A name for an expression, which later expressions can use."""
         return self._put("definitions", (name,), formula(value))
 
     def coordinate(self, name: str, start: Any = 0.0) -> Builder[M]:
@@ -148,7 +148,7 @@ class Builder(Generic[M]):
         return self._put("kinematics", (coordinate,), formula(velocity))
 
     def algebra(self, name: str | None = None, brackets: Mapping[tuple[str, str], Any] | None = None) -> Builder[M]:
-        """The brackets of the operators: those of a Lie algebra by its name, or each by itself."""
+        """The brackets of the operators: those of a named Lie algebra, or each one given separately."""
         if name is not None:
             self._put("algebra", ("name",), quoted(name))
         for (r, s), value in (brackets or {}).items():
@@ -165,7 +165,7 @@ class Builder(Generic[M]):
     def lagrangian(
         self, lagrangian: Any = None, *, kinetic: Any = None, potential: Any = None, dissipation: Any = None
     ) -> Builder[M]:
-        """The Lagrangian, or kinetic and potential energy; and Rayleigh's function of dissipation."""
+        """The Lagrangian, or the kinetic and potential energy; and Rayleigh's dissipation function."""
         given = {"lagrangian": lagrangian, "kinetic": kinetic, "potential": potential, "dissipation": dissipation}
         for key, value in given.items():
             if value is not None:
@@ -191,16 +191,16 @@ class Builder(Generic[M]):
         Parameters
         ----------
         joint : Joint or mapping, optional
-            How it moves relative to the one it hangs on, as ``Revolute(axis=[0, 0, 1])``; without one it has a ``position``.
+            How it moves relative to the body to which it is attached, as ``Revolute(axis=[0, 0, 1])``; without one it has a ``position``.
         parent : str, optional
-            The body it hangs on, the world unless given.
+            The body to which it is attached, the world unless given.
         **entries
             ``mass``, ``center``, ``inertia``, ``force``, ``torque``, …
         """
         return self._table("bodies", name, {"parent": parent, "joint": joint, **entries})
 
     def point(self, name: str, body: str, at: Sequence[Any] | None = None) -> Builder[M]:
-        """A point of a body with a joint: ``NAME_x``, ``NAME_y``, ``NAME_z`` are its place, to be used in expressions."""
+        """A point of a body with a joint: ``NAME_x``, ``NAME_y``, ``NAME_z`` are its coordinates, for use in expressions."""
         return self._table("points", name, {"body": body, "at": at})
 
     def loop(
@@ -213,13 +213,13 @@ class Builder(Generic[M]):
         axis: Sequence[Sequence[Any]] | None = None,
         length: Any = None,
     ) -> Builder[M]:
-        """A joint between two bodies that hang already: a ``"point"``, a ``"revolute"`` joint or a ``"rod"``."""
+        """A joint between two bodies that are already attached: a ``"point"``, a ``"revolute"`` joint or a ``"rod"``."""
         entries = {"kind": kind, "bodies": list(bodies), "at": at, "axis": axis, "length": length}
         return self._table("loops", name, entries)
 
     def draw(self, kind: str, **entries: Any) -> Builder[M]:
         """A shape that follows the motion in films: ``"line"``, ``"disc"``, ``"spring"``, … as in ``[[draw]]`` of a text."""
-        # A place from which something goes has the name of a keyword of Python.
+        # The name of a starting point, `from`, is a keyword of Python.
         entries = {key.rstrip("_"): value for key, value in entries.items()}
         self._drawn.append({key: entry(key, value) for key, value in {"kind": kind, **entries}.items()})
         return self
@@ -234,7 +234,7 @@ class Builder(Generic[M]):
         return self._put("forces", (on,), formula(value))
 
     def integral(self, name: str, value: Any) -> Builder[M]:
-        """An expression that should stay constant, watched along each motion."""
+        """An expression that should stay constant and is monitored along each motion."""
         return self._put("integrals", (name,), formula(value))
 
     def output(self, name: str, value: Any) -> Builder[M]:
@@ -292,6 +292,6 @@ class Builder(Generic[M]):
         Raises
         ------
         ModelError
-            With the place in :attr:`text`.
+            With the position in :attr:`text`.
         """
         return self._model_of(self.text, self._name)

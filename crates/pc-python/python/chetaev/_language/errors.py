@@ -1,4 +1,4 @@
-"""What can go wrong."""
+"""The errors of this package."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ class ChetaevError(Exception):
 
 
 class ModelError(ChetaevError, ValueError):
-    """An error in a model, with its place in the text.
+    """An error in a model, with its position in the text.
 
     Attributes
     ----------
     message : str
-        What is wrong, without its place.
+        What is wrong, without the position.
     entry : str
         Section and entry, such as ``[lagrangian] kinetic``; empty where there is none.
     line, column : int
-        Where it begins, both from 1, the column in characters.
+        Where the error begins, both counted from 1, the column in characters.
     help : str or None
-        What would be right.
+        A suggested correction.
 
     Examples
     --------
@@ -69,12 +69,12 @@ class DisagreementError(ChetaevError):
 
 
 class IntegrationError(ChetaevError, RuntimeError):
-    """An integration could not go on.
+    """An integration could not continue.
 
     Attributes
     ----------
     motion : Motion or None
-        What was reached before.
+        The motion up to that point.
     """
 
     def __init__(self, text: str, motion: MotionLike | None = None) -> None:

@@ -11,16 +11,16 @@ from chetaev._language.toml import formula, quoted
 
 @dataclass(frozen=True)
 class Event:
-    """An event of a run, beside those of the text.
+    """An event of a run, in addition to those of the text.
 
     Parameters
     ----------
     when : expression
-        It occurs where this vanishes.
+        The event occurs where this vanishes.
     direction : str
         ``"rising"``, ``"falling"`` or ``"both"``.
     terminal : bool
-        Whether it ends the motion.
+        Whether the event ends the motion.
     reset : mapping
         New values of coordinates and quasi-velocities.
     """
@@ -31,7 +31,7 @@ class Event:
     reset: Mapping[str, Any] = field(default_factory=dict)
 
     def text(self, name: str) -> str:
-        """The section of a text."""
+        """The section for this event in the text of a model."""
         lines = [
             f"[events.{quoted(name)}]",
             f"when = {formula(self.when)}",

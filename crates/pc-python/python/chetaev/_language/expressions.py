@@ -22,7 +22,7 @@ _NAME = re.compile(r"[A-Za-z_α-ωΑ-Ω][A-Za-z0-9_α-ωΑ-Ω]*'?\Z")
 
 
 class Expression:
-    """An expression of a model: its text, put together by operators.
+    """An expression of a model: its text, put together by operators of Python.
 
     Parameters
     ----------

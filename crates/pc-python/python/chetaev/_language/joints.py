@@ -9,18 +9,18 @@ from typing import Any, ClassVar
 
 @dataclass(frozen=True, kw_only=True)
 class Joint:
-    """How a body moves relative to the one it hangs on: the base of all joints.
+    """How a body moves relative to the one to which it is attached: the base of all joints.
 
     Parameters
     ----------
     at : sequence of three expressions, optional
-        Its place in the axes of the parent, from the origin of the parent; zero by default.
+        The position of the joint in the axes of the parent, from the origin of the parent; zero by default.
     turns : sequence of pairs, optional
-        How it is turned there: ``[("z", a), ("x", b)]`` about its z-axis by a, then about its x-axis, as turned, by b.
+        How the joint is rotated: ``[("z", a), ("x", b)]`` means by a about its z-axis, then by b about its rotated x-axis.
     rotation : sequence of nine expressions, optional
-        The same as a matrix from the axes of the joint to those of the parent, row after row.
+        The same rotation, given as a matrix from the axes of the joint to those of the parent, row by row.
     coordinates, quasi_velocities : sequence of str, optional
-        Names in place of those that are made of the name of the body.
+        Names that replace those made from the name of the body.
     """
 
     at: Sequence[Any] | None = None
@@ -33,14 +33,14 @@ class Joint:
     kind: ClassVar[str]
 
     def entries(self) -> dict[str, Any]:
-        """As ``joint`` of a body in a text has it."""
+        """The entries of ``joint`` in the text of a model."""
         given = {field.name: getattr(self, field.name) for field in fields(self)}
         return {"kind": self.kind, **{key: value for key, value in given.items() if value is not None}}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Fixed(Joint):
-    """The body stands still."""
+    """The body is fixed to its parent."""
 
     kind = "fixed"
 
@@ -59,7 +59,7 @@ class Revolute(Joint):
     """
 
     kind = "revolute"
-    #: Three numbers, of which only the ratios count.
+    #: The direction of the axis: three numbers, of which only the ratios matter.
     axis: Sequence[Any]
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from chetaev._language.errors import ChetaevError
 
-#: Functions of SymPy that models have too, by their names there.
+#: Functions of SymPy that models have too, with their names in models.
 _FUNCTIONS = {
     "sin": "sin",
     "cos": "cos",
@@ -40,8 +40,10 @@ _NAME = re.compile(r"[A-Za-z_α-ωΑ-Ω][A-Za-z0-9_α-ωΑ-Ω]*'?\Z")
 def text_of(value: Any) -> str:
     """An expression of SymPy in the language of models.
 
-    ``x(t)`` becomes ``x``, and its derivative with respect to ``t`` becomes ``x'``, as ``sympy.physics.mechanics`` has
-    coordinates. What has no equal in that language is refused. """ import sympy
+    ``x(t)`` becomes ``x``, and its derivative with respect to ``t`` becomes ``x'``, as ``sympy.physics.mechanics``
+    writes coordinates. What has no equivalent in that language is refused.
+    """
+    import sympy
 
     return _text(sympy.sympify(value))
 
@@ -117,7 +119,7 @@ def _text(value: Any) -> str:
 
 
 def _step(value: Any) -> str:
-    """step(x, a, b) of a choice by x ≥ 0 or x < 0."""
+    """The text step(x, a, b) for a choice by x ≥ 0 or x < 0."""
     import sympy
 
     (first, condition), *others = value.args
@@ -139,7 +141,7 @@ class Reader:
         self._known: dict[str, Any] = {}
 
     def define(self, name: str, text: str) -> None:
-        """Says that a name stands for an expression from now on."""
+        """Makes a name stand for an expression from now on."""
         self._known[name] = self.read(text)
 
     def symbol(self, name: str) -> Any:

@@ -27,16 +27,16 @@ def quoted(text: str) -> str:
 
 
 def number(value: float) -> str:
-    """A finite number of TOML that reads back as the same."""
+    """A number of TOML that reads back as the same finite value."""
     if not math.isfinite(value):
         raise ChetaevError(f"{value} is not a finite number")
     return repr(float(value))
 
 
 def formula(value: Any) -> str:
-    """An expression of TOML: of a number, a text, an expression of this package or of SymPy, or a function of names.
+    """An expression as a value of TOML, from a number, a text, an expression of this package or of SymPy, or a function of names.
 
-    A function is called with its parameters as names of the model.
+    A function is called with expressions for the names of its parameters, which are names of the model.
     """
     # Numbers of SymPy are real numbers of Python too, but may have more digits.
     if hasattr(value, "free_symbols"):
@@ -49,7 +49,7 @@ def formula(value: Any) -> str:
     return quoted(str(expression(value)))
 
 
-#: Entries whose texts are names, not expressions.
+#: Entries whose texts are names rather than expressions.
 _NAMES = frozenset(("kind", "body", "bodies", "parent", "coordinates", "quasi_velocities", "text"))
 
 

@@ -27,7 +27,7 @@ def _complex(pairs: list[list[float]]) -> Complexes:
 
 
 class Linearization:
-    """The motions near a state to first order: δẏ = A δy + B δu, δh = C δy + D δu.
+    """The motions near a state, to first order: δẏ = A δy + B δu, δh = C δy + D δu.
 
     The derivatives are exact. It is made by :meth:`Model.linearize`; printing it shows the page of
     ``pc linearize``.
@@ -37,7 +37,7 @@ class Linearization:
     state : dict
         The state, by the names of its components.
     components : tuple of str
-        The names of y: independent components of the states that satisfy the constraints, n of them.
+        The names of y: n independent components of the states that satisfy the constraints.
     inputs, outputs : tuple of str
         The names of u and h.
     A, B, C, D : array
@@ -45,15 +45,15 @@ class Linearization:
     eigenvalues : array
         Those of A, in descending order of their real parts.
     modes : list
-        The eigenvector of each, an array of n complex numbers, or None if it is not determined.
+        The eigenvector of each eigenvalue, an array of n complex numbers, or None if it is not determined.
     is_steady : bool
         Whether the state is an equilibrium or a steady motion.
     stability : str or None
-        The verdict of ``pc check`` on it; None if it is not steady.
+        The verdict of ``pc check`` on the state; None if it is not steady.
     second_order : dict or None
         ``coordinates`` and the matrices ``M``, ``G``, ``K``, ``F`` of M q̈ + G q̇ + K q = F u, where they are defined.
     data : dict
-        All that is known, as ``pc linearize --format json`` writes it.
+        All results, as ``pc linearize --format json`` writes them.
 
     Examples
     --------
@@ -89,7 +89,7 @@ class Linearization:
         self.second_order: dict[str, Any] | None = second
 
     def to_scipy(self) -> Any:
-        """A :class:`scipy.signal.StateSpace`; without outputs in the model these are all components."""
+        """A :class:`scipy.signal.StateSpace`; if the model has no outputs, all components are outputs."""
         import numpy as np
         from scipy.signal import StateSpace
 
@@ -106,18 +106,18 @@ class Linearization:
 
 
 class RootLocus:
-    """The eigenvalues over a parameter, made by :meth:`Model.root_locus`.
+    """The eigenvalues as functions of a parameter, made by :meth:`Model.root_locus`.
 
     Attributes
     ----------
     parameter : str
-        What is varied.
+        The name of what is varied.
     values : array
         Its values.
     branches : array
-        The eigenvalues: a row for each, followed from value to value; NaN if there are none.
+        The eigenvalues: a row for each, followed from value to value; NaN where there is none.
     missing : dict
-        The values that have no linearization, with the reason.
+        The values for which there is no linearization, with the reason for each.
     """
 
     def __init__(self, text: str, data: str) -> None:
@@ -134,7 +134,7 @@ class RootLocus:
         self.missing: dict[float, str] = {entry["value"]: entry["reason"] for entry in found["missing"]}
 
     def plot(self, *, ax: Any = None) -> Any:
-        """The branches in the complex plane, with matplotlib; returns the figure."""
+        """Draws the branches in the complex plane with matplotlib; returns the figure."""
         if ax is None:
             import matplotlib.pyplot as plt
 
@@ -167,7 +167,7 @@ class Equilibrium(NamedTuple):
     stability: str
     #: The dimension of the family of equilibria that it belongs to; 0 where it is isolated.
     family: int
-    #: How many of that family were found.
+    #: How many equilibria of that family were found.
     members: int
 
 
@@ -179,7 +179,7 @@ class Equilibria(Sequence[Equilibrium]):
     anywhere : tuple of str
         Coordinates on which nothing depends.
     box : dict
-        Where they were looked for.
+        The bounds within which they were sought.
     """
 
     def __init__(self, text: str, data: str) -> None:

@@ -23,7 +23,7 @@ class Occurrence(NamedTuple):
 
     #: The name of the event.
     name: str
-    #: When.
+    #: The time of the event.
     t: float
     #: The state before and after its reset.
     before: Floats
@@ -44,17 +44,17 @@ class Motion(Mapping[str, "Floats"]):
     columns : tuple of str
         The names, ``t`` first.
     events : list of Occurrence
-        What occurred, in order.
+        The events that occurred, in order.
     ending : str
         ``"completed"``, ``"event"`` or ``"failed"``.
     terminal : str or None
-        The name of the event that ended it.
+        The name of the event that ended the motion.
     drift : dict
-        How far each integral, including the energy, went from its value at the start.
+        How far each integral, including the energy, deviates at most from its value at the start.
     residuals : dict
         The largest residual of each constraint that is kept by projection.
     statistics : dict
-        Steps, evaluations, …; of ``"auto"`` also ``stiff_from``, the time at which stiffness was seen first, or None,
+        Steps, evaluations, …; for ``"auto"`` also ``stiff_from``, the time at which stiffness was first detected, or None,
         ``implicit_steps`` and ``changes``, how often the method changed.
 
     Examples
@@ -88,7 +88,7 @@ class Motion(Mapping[str, "Floats"]):
 
     @property
     def system(self) -> Any:
-        """The :class:`System` with the values that it had, derived once more when this is first asked for."""
+        """The :class:`System` with the values that it had, derived once more on the first request."""
         if self._system is None:
             model, form, settings = self._origin
             self._system = model.system(form, **settings)
@@ -120,7 +120,7 @@ class Motion(Mapping[str, "Floats"]):
 
     @property
     def drift(self) -> dict[str, float]:
-        """How far each integral, including the energy, went from its value at the start."""
+        """How far each integral, including the energy, deviates at most from its value at the start."""
         if len(self.t) == 0:
             return {}
         return {name: float(abs(self[name] - self[name][0]).max()) for name in self._kinds["conserved"]}
@@ -128,8 +128,8 @@ class Motion(Mapping[str, "Floats"]):
     def dense(self, t: npt.ArrayLike) -> Floats:
         """The state at any time of the motion: n numbers, or n × N for N times.
 
-        The motion is integrated once more when this is first asked for, with the polynomials of all steps kept. Between steps
-        states are off constraints by the error of a step.
+        On the first call the motion is integrated once more, and the polynomials of all steps are kept. Between steps, states
+        violate constraints by the error of a step.
 
         Examples
         --------
@@ -148,7 +148,7 @@ class Motion(Mapping[str, "Floats"]):
         return states[:, 0] if times.ndim == 0 else states.reshape(-1, *times.shape)
 
     def sensitivity(self, name: str, parameter: str) -> Floats:
-        """∂(column)/∂(parameter), where :meth:`System.run` was asked for it."""
+        """The column ∂(column)/∂(parameter), if it was requested from :meth:`System.run`."""
         return self[f"∂{name}/∂{parameter}"]
 
     def to_pandas(self) -> Any:
@@ -159,15 +159,15 @@ class Motion(Mapping[str, "Floats"]):
         return pd.DataFrame(self._values, index=index, columns=list(self.columns[1:]))
 
     def plot(self, names: Sequence[str] | None = None, *, ax: Any = None) -> Any:
-        """Columns over time, with matplotlib.
+        """Draws columns over time with matplotlib.
 
         Parameters
         ----------
         names : sequence of str, optional
-            The columns, on common axes; all unless given, grouped by kind and scale as ``pc run --plot`` does, with events and the drift of
+            The columns, on common axes; all unless given, grouped by kind and scale as in ``pc run --plot``, with events and the drift of
             integrals.
         ax : optional
-            The axes to draw into; only with names.
+            The axes to draw on; with these, all columns are drawn on common axes.
 
         Returns
         -------
@@ -215,12 +215,12 @@ class Motion(Mapping[str, "Floats"]):
         return {**recorded, "remark": remark}
 
     def animate(self) -> Page:
-        """The motion to be watched in a browser or a notebook, where the model can be drawn.
+        """An animation of the motion for a browser or a notebook, if the model can be drawn.
 
         Raises
         ------
         ChetaevError
-            Where the text has nothing to be drawn.
+            If the text contains nothing to be drawn.
         """
         page = self.system.animation_page(self._recorded())
         if page is None:
@@ -230,6 +230,6 @@ class Motion(Mapping[str, "Floats"]):
         return Page(page)
 
     def report(self) -> Page:
-        """One page with all that is known of the model and this motion."""
+        """A page with all that is known about the model and this motion."""
         page: Page = self.system.report(self)
         return page

@@ -13,14 +13,14 @@ if TYPE_CHECKING:
 
 
 class Check:
-    """What can be said of a model before it is run.
+    """What can be said about a model before it is run.
 
     Attributes
     ----------
     text : str
-        For people.
+        The results as text for people.
     data : dict
-        For programs.
+        The results as data for programs.
     """
 
     __slots__ = ("data", "text")
@@ -40,9 +40,9 @@ class Check:
 
 
 class Equations:
-    """Equations of motion, in print.
+    """Equations of motion in printed form.
 
-    In a notebook they show themselves as formulas. ``print`` shows them as text.
+    A notebook displays them as formulas; ``print`` shows them as text.
     """
 
     __slots__ = ("_arguments", "_core", "form", "text")
@@ -67,7 +67,7 @@ class Equations:
         return self.text
 
     def latex(self) -> str:
-        """The equations for a paper, with amsmath.
+        """The equations as LaTeX for a paper, with amsmath.
 
         Examples
         --------
@@ -77,12 +77,12 @@ class Equations:
         return self._printed("latex")
 
     def data(self) -> dict[str, Any]:
-        """The equations for programs: kinematics, structure coefficients, mass matrix, right-hand sides, operations."""
+        """The equations as data for programs: kinematics, structure coefficients, mass matrix, right-hand sides, operations."""
         found: dict[str, Any] = json.loads(self._printed("json"))
         return found
 
     def html(self) -> str:
-        """The equations for a browser, in MathML."""
+        """The equations in MathML for a browser."""
         _, form, _, inline, _ = self._arguments
         name, plain, parts = self._core.displayed(form, inline)
         shown = [f"<p><b>{html.escape(name)}</b></p>"]
@@ -99,7 +99,7 @@ class Equations:
         return self.html()
 
     def _repr_latex_(self) -> str:
-        # Notebooks know no comments outside formulas.
+        # Notebooks do not support comments outside formulas.
         return "\n".join(line for line in self.latex().splitlines() if not line.startswith("%"))
 
     def sympy(self) -> dict[str, Any]:
@@ -123,16 +123,16 @@ class Equations:
         return equations(self.data())
 
     def c(self, name: str = "model", *, jacobian: bool = True) -> dict[str, str]:
-        """The equations as C without dependencies: names of files with their texts."""
+        """The equations as C source without dependencies: the texts of files by name."""
         return dict(self._core.source(self.form, "c", name, jacobian))
 
     def rust(self, name: str = "model", *, jacobian: bool = True) -> dict[str, str]:
-        """The equations as Rust without dependencies: names of files with their texts."""
+        """The equations as Rust source without dependencies: the texts of files by name."""
         return dict(self._core.source(self.form, "rust", name, jacobian))
 
 
 class Theory:
-    """The analysis of a model, in print."""
+    """The analysis of a model in printed form."""
 
     __slots__ = ("_arguments", "_core", "text")
 
@@ -170,7 +170,7 @@ class Theory:
 
 
 class Page:
-    """A page for a browser, without anything from elsewhere; in a notebook it shows itself in a frame.
+    """A page for a browser that loads nothing from elsewhere; a notebook displays it in a frame.
 
     Attributes
     ----------

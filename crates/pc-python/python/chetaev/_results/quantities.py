@@ -18,12 +18,12 @@ class Lyapunov(NamedTuple):
 
     #: The largest exponents, in 1/time.
     exponents: Floats
-    #: Their means after each interval: a row for each.
+    #: Their means after each interval: a row for each interval.
     history: Floats
 
 
 class Bracket:
-    """The Poisson bracket (f, g) (12) of two functions of the state, a function of time and state."""
+    """The Poisson bracket (f, g) (12) of two functions of the state, as a function of time and state."""
 
     __slots__ = ("_function", "_arguments")
 

@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 class Sweep(Mapping[str, "Floats"]):
     """The members of a sweep: arrays by name, one entry, or one row, for each member.
 
-    A value that was varied has its name, that of a start value followed by ``(start)``. It is made by :meth:`System.sweep`.
+    A parameter that was varied is an array by its name, a start value by its name and ``(start)``. A sweep is made by :meth:`System.sweep`.
 
     Attributes
     ----------
     status : list of str
         ``"completed"``, ``"event"``, ``"failed"``, ``"refused"`` or ``"panicked"``.
     message : list of str
-        The event, or why there is no motion.
+        The event that ended each motion, or why there is no motion.
     steps : array
-        Steps of each motion.
+        The number of steps of each motion.
     """
 
     def __init__(self, varied: dict[str, Floats], columns: tuple[str, ...], swept: _native._Swept) -> None:
@@ -59,7 +59,7 @@ class Sweep(Mapping[str, "Floats"]):
 
     @property
     def members(self) -> int:
-        """How many there are."""
+        """The number of members."""
         return len(self.status)
 
     def to_pandas(self) -> Any:
@@ -92,7 +92,7 @@ def swept(
     progress: bool,
     settings: dict[str, Any],
 ) -> Sweep:
-    """What :meth:`System.sweep` does."""
+    """Carries out :meth:`System.sweep`."""
     import numpy as np
 
     if bool(vary) == bool(random):

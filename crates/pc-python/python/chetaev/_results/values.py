@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Values(MutableMapping[str, float]):
-    """Parameters or start values of a system, to be read and set.
+    """Parameters or start values of a system, which can be read and set.
 
     :meth:`update` sets several at once: all of them, or none if they contradict each other.
     """

@@ -61,7 +61,7 @@ impl Assembler {
         if self.is_wide() { LANES } else { LANES / 2 }
     }
 
-    /// Numbers in the pool for each constant: AVX-512 instructions can broadcast a single one.
+    /// Number of copies of each constant in the pool: AVX-512 instructions can broadcast a single one.
     pub(super) fn copies(&self) -> usize {
         if self.is_wide() { 1 } else { self.width() }
     }
@@ -156,7 +156,7 @@ impl Assembler {
         self.put(&instruction)
     }
 
-    /// Notes the lanes in which a ≤ b does not hold; `free` is a vector that may be overwritten.
+    /// Records the lanes in which a ≤ b does not hold; `free` is a vector that may be overwritten.
     pub(super) fn note(&mut self, free: Vector, a: Vector, last: Last) -> Result<(), EncodeError> {
         const NOT_LESS_OR_EQUAL: u32 = 0x16; // NLE_UQ
         let read = if self.is_wide() {
@@ -265,15 +265,15 @@ impl Assembler {
         self.put(&Instruction::with1(Code::Call_rm64, Register::RAX)?)
     }
 
-    /// Jumps to the end if a lane was noted; returns the place of the jump's distance, to be filled
-    /// in.
+    /// Jumps to the end if a lane was recorded; returns the position of the jump's distance, to be
+    /// filled in.
     pub(super) fn leave_if_noted(&mut self) -> Result<usize, EncodeError> {
         self.put(&Instruction::with2(Code::Test_rm32_r32, NOTED, NOTED)?)?;
         self.raw(&[0x0f, 0x85, 0, 0, 0, 0]); // jne
         Ok(self.len - 4)
     }
 
-    /// Returns the noted lanes.
+    /// Returns the recorded lanes.
     pub(super) fn leave(&mut self) -> Result<(), EncodeError> {
         self.put(&Instruction::with2(Code::Mov_r32_rm32, Register::EAX, NOTED)?)?;
         self.put(&Instruction::with(Code::VEX_Vzeroupper))?;

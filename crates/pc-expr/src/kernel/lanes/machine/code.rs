@@ -29,7 +29,7 @@ pub(crate) struct Code {
     /// Written once, then executable and no longer writable.
     memory: Mmap,
     pool: Vec<Lanes>,
-    /// Lanes of a vector.
+    /// Number of lanes in a vector.
     width: usize,
     rows: usize,
 }
@@ -53,7 +53,7 @@ impl Code {
         Ok(Code { memory, pool: pool.collect(), width, rows })
     }
 
-    /// Rows of a frame.
+    /// Number of rows of a frame.
     pub(crate) fn rows(&self) -> usize {
         self.rows
     }
@@ -64,7 +64,7 @@ impl Code {
     }
 
     /// Runs the code; for each vector with a lane out of range calls `again` with its first lane
-    /// and its width, the inputs unchanged.
+    /// and its width, while the inputs are still unchanged.
     ///
     /// # Panics
     /// If the frame has too few rows.
@@ -87,8 +87,8 @@ impl Code {
     }
 }
 
-/// Applies the function of that number to the first `width` lanes of three rows, and writes to the
-/// first row.
+/// Applies the function with that number to the first `width` lanes of three rows, and writes the
+/// results to the first row.
 extern "sysv64" fn routine(rows: *mut f64, number: u32, width: u32) {
     let Some(function) = Function::ALL.get(number as usize) else { return };
     for lane in 0..width as usize {

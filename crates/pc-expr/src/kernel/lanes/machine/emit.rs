@@ -65,7 +65,7 @@ struct Emitter<'a> {
 }
 
 impl Emitter<'_> {
-    /// Emits everything up to the return; returns the place of the jump's distance to it, if there
+    /// Emits everything up to the return; returns the position of the jump's distance to it, if there
     /// is a jump.
     fn body(&mut self) -> Result<Option<usize>, EncodeError> {
         self.assembler.enter()?;
@@ -104,7 +104,7 @@ impl Emitter<'_> {
         Ok(leave)
     }
 
-    /// Writes a value to a row, in a separate line.
+    /// Writes a value to a row, as a line of its own.
     fn write(&mut self, row: u32, value: u32) -> Result<(), EncodeError> {
         self.registers.end_line(&[], self.at);
         let vector = self.registers.in_register(value, &mut self.assembler, self.at)?;
@@ -112,7 +112,7 @@ impl Emitter<'_> {
         self.assembler.store(row, vector)
     }
 
-    /// Notes the register of a value, and writes it to its rows.
+    /// Records the register of a value, and writes the value to its rows.
     fn made(&mut self, value: u32, vector: Vector) -> Result<(), EncodeError> {
         self.registers.put(value, vector);
         for &row in &self.rows_of[value as usize] {
@@ -202,7 +202,7 @@ impl Emitter<'_> {
     }
 
     /// A register that may be overwritten and holds one of these operands, either read for the last
-    /// time or a copy; returned after the number of that operand.
+    /// time or a copy; it is returned after the index of that operand.
     fn overwritten(&mut self, operands: [u32; 3], order: [usize; 3]) -> Result<(usize, Vector), EncodeError> {
         let alone = |i: usize| (0..3).all(|j| j == i || operands[j] != operands[i]);
         for i in order {
@@ -273,7 +273,7 @@ impl Emitter<'_> {
         Ok(d)
     }
 
-    /// Any function of three bits, with AVX-512.
+    /// Applies a function of three bits to each bit of the operands, with AVX-512.
     fn by_table(
         &mut self,
         operands: [u32; 3],

@@ -9,7 +9,7 @@ use super::super::tape::{LaneTape, LaneValue, Node};
 pub(super) enum Line {
     /// The value of a node.
     Node(u32),
-    /// Notes the lanes in which a ≤ b does not hold.
+    /// Records the lanes in which a ≤ b does not hold.
     Note(u32, u32),
 }
 
@@ -72,7 +72,8 @@ impl Lines {
         }
     }
 
-    /// The rows and values written after the last line: outputs that no line computes, then the inputs replaced.
+    /// The rows and values written after the last line: outputs that no line computes, then the inputs that are
+    /// replaced.
     pub(super) fn written_last<'t>(&'t self, tape: &'t LaneTape) -> impl Iterator<Item = (u32, u32)> + 't {
         self.passed(tape).chain(tape.replaced.iter().map(|&(row, value)| (row, self.value(value))))
     }

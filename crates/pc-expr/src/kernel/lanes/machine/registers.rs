@@ -5,7 +5,7 @@
 
 use super::assembler::{Assembler, EncodeError, Home, Last, Vector};
 
-/// A value in memory is loaded to a register if it is read again within this many lines.
+/// A value in memory is loaded into a register if it is read again within this many lines.
 const SOON: u32 = 24;
 /// The next use of a value that is not read again.
 pub(super) const NEVER: u32 = u32::MAX;
@@ -15,7 +15,7 @@ pub(super) struct Registers {
     /// The value in each register.
     owner: Vec<Option<u32>>,
     locked: u32,
-    /// The register of each value, and its place in memory.
+    /// The register of each value, and where it is in memory.
     place: Vec<Option<Vector>>,
     home: Vec<Option<Home>>,
     /// The lines that read each value, and how many of them have passed.
@@ -164,7 +164,7 @@ impl Registers {
         Ok(vector)
     }
 
-    /// Loads a value from memory, without noting its register.
+    /// Loads a value from memory, without recording its register.
     pub(super) fn load(
         &mut self,
         vector: Vector,
@@ -175,8 +175,8 @@ impl Registers {
         assembler.load(vector, home)
     }
 
-    /// A value as the last operand of an instruction: in memory, unless it is in a register or read
-    /// again soon.
+    /// A value as the last operand of an instruction: read from memory, unless it is in a register or
+    /// is read again soon.
     pub(super) fn last(
         &mut self,
         value: u32,
@@ -190,7 +190,7 @@ impl Registers {
         }
     }
 
-    /// Notes that a value is in a register.
+    /// Records that a value is in a register.
     pub(super) fn put(&mut self, value: u32, vector: Vector) {
         self.owner[usize::from(vector)] = Some(value);
         self.place[value as usize] = Some(vector);
