@@ -15,14 +15,14 @@ struct Resultants<'g> {
     columns: Vec<(String, Expr<'g>)>,
     /// The symbols of all components with their values.
     known: Vec<(Expr<'g>, Expr<'g>)>,
-    /// The reactions that virtual work leaves undetermined, in words.
+    /// Descriptions of the reactions that virtual work leaves undetermined.
     undetermined: Vec<String>,
 }
 
 impl<'g> Assembler<'g, '_> {
     /// The system with the forces and torques of the reactions on bodies substituted in its integrals and
-    /// outputs, and added as outputs if all reactions are to be observed; and the undetermined ones, in
-    /// words.
+    /// outputs, and added to the outputs if all reactions are to be observed; then descriptions of the
+    /// undetermined reactions.
     ///
     /// # Errors
     /// [`MeaningError::ForceNotDetermined`] if the model names an undetermined one.

@@ -1,4 +1,5 @@
-//! The text of a model as a typed document: every entry with its place, names not yet resolved.
+//! The text of a model as a typed document: every entry has its place in the file, and names are not yet
+//! resolved.
 
 use pc_expr::{Direction, Method};
 use pc_mech::Interpolation;
@@ -18,38 +19,39 @@ pub struct Document {
     pub source: Source,
     /// `[model]`
     pub model: Heading,
-    /// `[parameters]`, which stay adjustable, each with its number, or an expression in those before it.
+    /// `[parameters]`, which stay adjustable, each with its number or an expression in the preceding ones.
     pub parameters: Vec<NamedExpression>,
     /// `[inputs]`
     pub inputs: Vec<Input>,
     /// `[definitions]`
     pub definitions: Vec<NamedExpression>,
-    /// Coordinates, each with its start value: those of joints, then the others of `[coordinates]`.
+    /// Coordinates, each with its start value: those of joints, then the others, from `[coordinates]`.
     pub coordinates: Vec<NamedExpression>,
-    /// Quasi-velocities: those of joints unless all velocities are `x'`, then the others of
-    /// `[quasi_velocities]` except entries `"x'"`.
+    /// Quasi-velocities: those of joints, unless all velocities are `x'`, then the others, from
+    /// `[quasi_velocities]`, without its entries `"x'"`.
     pub quasi_velocities: Vec<QuasiVelocity>,
-    /// Entries `"x'" = value` of `[quasi_velocities]`: start velocities by the names of coordinates, without prime.
+    /// The entries `"x'" = value` of `[quasi_velocities]`: start velocities under the names of their coordinates,
+    /// without the prime.
     pub start_velocities: Vec<NamedExpression>,
     /// `[states]`
     pub states: Vec<State>,
-    /// `[kinematics]`: x_i' by the names of coordinates.
+    /// `[kinematics]`: the expressions of x_i', under the names of the coordinates.
     pub kinematics: Vec<NamedExpression>,
     /// `[algebra]`
     pub algebra: Option<Algebra>,
-    /// `[constraints]`, then those that close `[loops.NAME]`.
+    /// `[constraints]`, then the constraints that close `[loops.NAME]`.
     pub constraints: Vec<Constraint>,
-    /// `[lagrangian]`; given unless there are bodies.
+    /// `[lagrangian]`; it is always given if there are no bodies.
     pub lagrangian: Option<Lagrangian>,
     /// `[bodies.NAME]` with a position.
     pub bodies: Vec<Body>,
     /// `[bodies.NAME]` with a joint.
     pub tree: Vec<TreeBody>,
-    /// `[points.NAME]`, then the points where `[loops.NAME]` are closed.
+    /// `[points.NAME]`, then the points at which `[loops.NAME]` are closed.
     pub points: Vec<Point>,
     /// `[gravity]`
     pub gravity: Option<Gravity>,
-    /// `[forces]`, by the names of quasi-velocities or coordinates.
+    /// `[forces]`, under the names of the quasi-velocities or coordinates on which they act.
     pub forces: Vec<NamedExpression>,
     /// `[integrals]`
     pub integrals: Vec<NamedExpression>,
@@ -65,10 +67,10 @@ pub struct Document {
     pub simulation: Simulation,
 }
 
-/// Title of a model.
+/// The title of a model.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Heading {
-    /// Name of the system.
+    /// The name of the system.
     pub name: Option<Located<String>>,
     /// The description of the system.
     pub description: Option<Located<String>>,
@@ -76,7 +78,7 @@ pub struct Heading {
     pub reference: Option<Located<String>>,
 }
 
-/// A value that a program or a table gives the system.
+/// A value that the system is given by a program or a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
     /// Its name.
@@ -90,7 +92,7 @@ pub struct Input {
 pub enum InputValue {
     /// A number, or an expression in parameters: constant until it is set.
     Constant(Expression),
-    /// Values at times.
+    /// A list of times and the values at these times.
     Lists {
         /// Their place.
         place: Place,
@@ -112,18 +114,18 @@ pub struct TableFile {
     pub file: Located<String>,
     /// The column of the values.
     pub column: Located<String>,
-    /// The column of the times; if left out, `t` or else the first one.
+    /// The column of the times; if left out, the column `t` or else the first one.
     pub time: Option<Located<String>>,
     /// The interpolation between the times.
     pub interpolation: Interpolation,
 }
 
-/// η_s: at least one of `is` and `start` is given.
+/// A quasi-velocity η_s: at least one of `is` and `start` is given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct QuasiVelocity {
     /// Its name.
     pub name: Name,
-    /// Its definition by the velocities of the coordinates.
+    /// Its definition in terms of the velocities of the coordinates.
     pub is: Option<Expression>,
     /// Its start value; 0 if it is left out.
     pub start: Option<Expression>,
@@ -158,7 +160,8 @@ pub enum AlgebraDefinition {
     Brackets(Vec<Bracket>),
 }
 
-/// [X_left, X_right] = value; one of the names may be `t`. No pair is given twice in the same order.
+/// A given bracket [X_left, X_right] = value; one of the names may be `t`. No pair is given twice in the same
+/// order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bracket {
     /// First field.
@@ -169,7 +172,7 @@ pub struct Bracket {
     pub value: Expression,
 }
 
-/// An expression that stays zero.
+/// A constraint: an expression that is required to stay zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Constraint {
     /// Its label, outside the namespace of the model.
@@ -191,8 +194,8 @@ pub enum ConstraintKind {
     Nonlinear,
 }
 
-/// The energy. `lagrangian` excludes `kinetic` and `potential`; one of `lagrangian` and `kinetic` is given unless
-/// there are bodies.
+/// The energy. `lagrangian` excludes `kinetic` and `potential`; if there are no bodies, either `lagrangian` or
+/// `kinetic` is given.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lagrangian {
     /// The section's header.
@@ -228,19 +231,19 @@ pub struct Body {
     pub torque: Option<[Expression; 3]>,
 }
 
-/// A uniform field of gravity, which acts on the mass centres of all bodies.
+/// A uniform gravitational field, which acts on the mass centres of all bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gravity {
     /// The section's header.
     pub place: Place,
-    /// The acceleration of free fall, along the axes of the positions.
+    /// The acceleration of free fall, in components along the axes of the positions.
     pub acceleration: [Expression; 3],
 }
 
 /// The orientation of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Orientation {
-    /// The rows of R, from body to space.
+    /// The rows of the rotation matrix R from body axes to fixed axes.
     Rotation(Box<[Expression; 9]>),
     /// The components of the angular velocity.
     AngularVelocity(Box<[Expression; 3]>),
@@ -249,13 +252,13 @@ pub enum Orientation {
 /// A solution of Hamilton–Jacobi's equation, as claimed by the user.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HamiltonJacobi {
-    /// S, a function of time, coordinates and constants.
+    /// The function S of time, coordinates and constants.
     pub action: Expression,
     /// Its constants, each with a value near which S is defined.
     pub constants: Vec<(Name, Located<f64>)>,
 }
 
-/// An event where an expression passes through zero.
+/// An event, which occurs where an expression passes through zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
     /// Its label, outside the namespace of the model.
@@ -264,15 +267,15 @@ pub struct Event {
     pub place: Place,
     /// The expression that passes through zero.
     pub when: Expression,
-    /// The direction in which it does.
+    /// The direction in which it passes through zero.
     pub direction: Option<Located<Direction>>,
     /// Whether the run ends there.
     pub terminal: Option<Located<bool>>,
-    /// New values; a velocity keeps its prime in the name.
+    /// The new values after the event; the name of a velocity keeps its prime.
     pub reset: Vec<NamedExpression>,
 }
 
-/// The settings of a run; the program chooses those left out.
+/// The settings of a run; the program chooses those that are left out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Simulation {
     /// The section's header.
@@ -291,8 +294,8 @@ pub struct Simulation {
     pub max_step: Option<Located<f64>>,
     /// The number of parts of each step that are searched for events, at least 1.
     pub samples_per_step: Option<Located<u32>>,
-    /// The fraction of the first interval between events to which the remaining time shrinks before they count as
-    /// accumulated, at least 0 and less than 1.
+    /// The fraction of the first interval between events to which the time remaining until their accumulation
+    /// must shrink before they count as accumulated; at least 0 and less than 1.
     pub accumulation: Option<Located<f64>>,
     /// Integration method.
     pub method: Option<Located<Method>>,
@@ -300,9 +303,9 @@ pub struct Simulation {
     pub form: Option<Located<Variables>>,
     /// The quasi-velocities of the form `hamel`, as linear forms in the velocities.
     pub hamel: Vec<NamedExpression>,
-    /// The velocities that are to be independent; the program's choice if there are none.
+    /// The velocities that are to be independent; if empty, the program chooses them.
     pub independent: Vec<Located<String>>,
-    /// Integrals, or `energy`, to whose values at the start the motion is projected.
+    /// The integrals, or `energy`, that projection keeps at their values at the start.
     pub project: Vec<Located<String>>,
 }
 

@@ -16,7 +16,7 @@ impl AbsoluteTolerance {
         names.iter().zip(usual).map(of).collect()
     }
 
-    /// These, and those of `other` where none is given here.
+    /// These tolerances, completed by those of `other` where none is given here.
     pub fn or(mut self, other: &AbsoluteTolerance) -> AbsoluteTolerance {
         self.all = self.all.or(other.all);
         let further = other.each.iter().filter(|(name, _)| self.own(name).is_none()).cloned();
@@ -24,7 +24,7 @@ impl AbsoluteTolerance {
         self
     }
 
-    /// The one that is given last counts.
+    /// The tolerance given for this name; the last one if there are several.
     fn own(&self, name: &str) -> Option<f64> {
         self.each.iter().rev().find(|(known, _)| known == name).map(|&(_, tolerance)| tolerance)
     }
