@@ -1,4 +1,4 @@
-//! The functions of expressions.
+//! The functions that expressions may contain.
 
 use pc_expr::{Expr, Graph};
 
