@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use pc_solve::CheckpointError;
 
-/// Why a run cannot continue from a file, or keep checkpoints there.
+/// Why a run cannot continue from a file, or keep checkpoints in it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckpointFileError {
@@ -17,7 +17,7 @@ pub enum CheckpointFileError {
         /// Why.
         source: io::Error,
     },
-    /// The file is not a checkpoint, or a damaged one.
+    /// The file is not a checkpoint, or is damaged.
     #[error("--resume {}: {source}; start afresh without --resume", path.display())]
     Unusable {
         /// The file.
@@ -30,7 +30,7 @@ pub enum CheckpointFileError {
     OtherRun {
         /// The file.
         path: PathBuf,
-        /// What is different, then and now.
+        /// What is different now, with the value then and now.
         what: String,
     },
     /// A checkpoint would overwrite something else.
@@ -39,7 +39,7 @@ pub enum CheckpointFileError {
         /// The file.
         path: PathBuf,
     },
-    /// `--every` where no checkpoint is kept.
+    /// `--every` is given although no checkpoint is kept.
     #[error("--every sets how often checkpoints are written; give --checkpoint FILE too")]
     Nowhere,
 }

@@ -1,4 +1,4 @@
-//! A model in one form, derived and compiled once for any number of runs.
+//! The equations of a model in one form, derived and compiled once for any number of runs.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use pc_report::dropped;
 /// The equations of a model in one form, compiled, with remarks on them.
 #[derive(Clone)]
 pub struct Derived {
-    /// The equations, with the values that the model has.
+    /// The equations, with the values of the model.
     pub flow: Flow,
     /// The equations as a prototype for other values; none if other values may change more than numbers.
     pub prototype: Option<Arc<Prototype>>,
@@ -17,12 +17,12 @@ pub struct Derived {
     pub(crate) facts: Facts,
 }
 
-/// Facts about equations after they are compiled.
+/// Facts about the equations that are remembered after they are compiled.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Facts {
     /// The constraints that were dropped, each with the reason.
     pub(crate) dropped: Vec<(String, String)>,
-    /// Whether forces or the Lagrangian jump where the state changes.
+    /// Whether forces or the Lagrangian are discontinuous functions of the state.
     pub(crate) jumps: bool,
     /// Whether an event changes the state.
     pub(crate) has_resets: bool,
@@ -53,10 +53,10 @@ impl Derived {
         Ok(Derived { prototype, facts: Facts::of(assembly), flow })
     }
 
-    /// The same for a model with other values.
+    /// The same equations for a model with other values.
     ///
     /// # Errors
-    /// [`ModelError`] where the model has to be derived anew and cannot be.
+    /// [`ModelError`] if the equations have to be derived anew and cannot be.
     pub fn renewed(&self, model: &Model, form: Variables, t_start: f64) -> Result<Derived, ModelError> {
         match self.prototype.as_ref().and_then(|prototype| prototype.flow(model, t_start)) {
             Some(flow) => Ok(Derived { flow, prototype: self.prototype.clone(), facts: self.facts.clone() }),

@@ -1,4 +1,4 @@
-//! A run for pages and pictures.
+//! Prepares a run for pages and pictures.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use crate::motion::table::Table;
 use pc_print::short;
 
 impl Run {
-    /// The run for pages and pictures.
+    /// The run in the form that pages and pictures take.
     pub fn record(&self) -> Record {
         let at = || short(self.statistics.current_time, 6);
         let remark = match &self.ending {
