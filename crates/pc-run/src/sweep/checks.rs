@@ -58,7 +58,7 @@ impl Work for Checks {
         &self.members
     }
 
-    /// Each is compared when it is checked.
+    /// Does nothing here: each member is compared when it is checked.
     fn vouched(&self) -> Result<(), RunError> {
         Ok(())
     }

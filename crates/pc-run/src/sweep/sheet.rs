@@ -8,7 +8,7 @@ use super::of::SweepOf;
 use super::record::Record;
 use crate::table::rows::{Cell, Column, Kind};
 
-/// A record that is not made of whole rows: its names and numbers come from different tables.
+/// A record that does not consist of whole rows: its names and numbers come from different tables.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "member {member} has {} varied values, {} numbers and {} words, which do not fill rows of {}, {} and {}; no table is written, because this is a defect of this program",
@@ -17,9 +17,9 @@ use crate::table::rows::{Cell, Column, Kind};
 pub struct Misshapen {
     /// The member.
     pub member: u64,
-    /// Its varied values, its numbers and its words.
+    /// How many varied values, numbers and words it has.
     pub found: [usize; 3],
-    /// The numbers and words of one row.
+    /// How many varied values, numbers and words belong to one row.
     pub columns: [usize; 3],
 }
 
@@ -28,14 +28,15 @@ pub struct Misshapen {
 pub struct Sheet {
     of: SweepOf,
     columns: Vec<Column>,
-    /// How many values are varied.
+    /// How many columns are varied quantities.
     varied: usize,
     /// How many columns are results.
     results: usize,
 }
 
 impl Sheet {
-    /// Number of the member, what is varied, how it ended, then `results`, steps of a motion, and message.
+    /// The columns of a sweep: the number of the member, the varied quantities, how the member ended, then
+    /// `results`, the steps of a motion, and a message.
     pub(crate) fn new(of: SweepOf, names: &[String], results: &[Column]) -> Sheet {
         let varied: Vec<Column> = names.iter().map(|name| Column::new(name, Kind::Number)).collect();
         // What is varied and shown is the same, as a parameter that is an integral would be: names are of one space.
@@ -86,7 +87,7 @@ impl Sheet {
         Some(Sheet { of, columns, varied, results })
     }
 
-    /// Names of the varied quantities.
+    /// The names of the varied quantities.
     pub(crate) fn varied(&self) -> impl Iterator<Item = &str> {
         self.columns[1..=self.varied].iter().map(|column| column.name.as_str())
     }
@@ -97,7 +98,7 @@ impl Sheet {
         &self.columns[from..from + self.results]
     }
 
-    /// Names of the numbers among the results.
+    /// The names of those results that are numbers.
     pub(crate) fn numbers(&self) -> Vec<&str> {
         let numbers = self.results().iter().filter(|column| column.kind == Kind::Number);
         numbers.map(|column| column.name.as_str()).collect()
@@ -108,7 +109,7 @@ impl Sheet {
         &self.columns
     }
 
-    /// An error unless the numbers and words of a member fill whole rows, at least one.
+    /// An error unless the numbers and words of a member fill one or more whole rows.
     ///
     /// # Errors
     /// [`Misshapen`]
@@ -134,7 +135,7 @@ impl Sheet {
         })
     }
 
-    /// The rows of a member, at least one.
+    /// The rows of a member, of which there is at least one.
     ///
     /// # Errors
     /// [`Misshapen`], as [`io::ErrorKind::InvalidData`].

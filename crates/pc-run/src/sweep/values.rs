@@ -5,7 +5,7 @@ use std::fmt;
 /// A quantity with its values: `NAME=FROM:TO:N`, `NAME=FROM:TO:N:log` or `NAME=A,B,…`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vary {
-    /// The parameter, or what has a start value.
+    /// The name of a parameter, or of something that has a start value.
     pub name: String,
     /// Its values.
     pub values: Values,
@@ -23,7 +23,7 @@ pub enum Values {
 }
 
 impl Values {
-    /// How many there are.
+    /// How many values there are.
     pub fn count(&self) -> u64 {
         match self {
             Values::Even(_, _, count) | Values::Logarithmic(_, _, count) => *count,

@@ -7,7 +7,7 @@ use pc_print::one_line;
 
 use crate::table::rows::{Cell, Rows};
 
-/// A header, then a line for each row, numbers with 17 significant digits, which reproduce them
+/// Writes a header, then a line for each row. Numbers have 17 significant digits, which reproduce them
 /// exactly; text is quoted if necessary.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! Tables as formats see them: columns, and rows of cells.
+//! Tables as the writers of formats see them: columns, and rows of cells.
 
 use std::io;
 
@@ -23,7 +23,7 @@ pub struct Column {
 }
 
 impl Column {
-    /// A column of this name.
+    /// A column with this name.
     pub fn new(name: impl Into<String>, kind: Kind) -> Column {
         Column { name: name.into(), kind }
     }
@@ -55,7 +55,7 @@ pub trait Rows {
     /// Gives each row to `take`.
     ///
     /// # Errors
-    /// [`io::Error`] from `take`, or from what the rows are read from.
+    /// [`io::Error`] from `take`, or from the source of the rows.
     fn each(&self, take: Take<'_>) -> io::Result<()>;
 
     /// Gives each cell of column `j` to `take`.
