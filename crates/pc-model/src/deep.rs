@@ -4,7 +4,7 @@
 #[cfg(feature = "any-stack")]
 const LEAST: usize = 2 << 20;
 
-/// The size of that stack: functions at the greatest depth of nesting take a third of a mebibyte, and several
+/// The size of that stack: functions nested to the greatest depth need a third of a mebibyte, and several
 /// times as much without optimisation.
 #[cfg(feature = "any-stack")]
 const STACK: usize = 8 << 20;

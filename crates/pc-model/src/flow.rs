@@ -1,4 +1,4 @@
-//! The vector field that is integrated, its events, and the columns of a table of its states.
+//! The vector field to be integrated, its events, and the columns of a table of its states.
 //!
 //! An [`Assembly`](crate::Assembly) becomes a [`Flow`](flow::Flow). Read `variables` first, the equations in the variables of their state;
 //! then `free_form`, the equations in independent quasi-velocities, whose start is given by `formulas`; then `compile`, which compiles

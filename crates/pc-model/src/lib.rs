@@ -4,7 +4,7 @@
 //! A [`Document`] holds the contents of the text, section by section. A [`Model`] is a document with the
 //! values of its parameters; [assembled](Model::assemble) in a graph, it is an [`Assembly`]: a
 //! [`System`](pc_mech::System) in quasi-velocities with its start, the constraints, and the way in which they
-//! [bind](ConstraintTreatment) it. Any consistent units will do.
+//! [bind](ConstraintTreatment) it. Any consistent units can be used.
 //!
 //! ```
 //! use pc_mech::Graph;

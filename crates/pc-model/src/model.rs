@@ -1,4 +1,4 @@
-//! A model: a document with the values of its parameters, and errors located in it.
+//! Models: documents with values of their parameters, and errors located in them.
 //!
 //! A [`Document`](crate::Document) becomes a [`Model`](model::Model), from which equations are derived. Read
 //! `model` first; `blame` finds the entry in the file that causes an error of the derivation, `start` changes

@@ -1,16 +1,16 @@
 //! Nonholonomic constraints in quasi-velocities: their classification, equations of motion, reactions.
 //!
-//! Numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994), with its
-//! misprints corrected; conventions are those of [`pc_mech`]. Of k quasi-velocities, l are free and have
-//! indices r, s = 1..l; the other k − l are kept at zero and have indices α = l+1..k. The index m runs over
-//! all of them. The library is independent of units: any consistent units will do.
+//! Numbers in brackets are those of the equations in V. V. Rumyantsev, *On Poincaré–Chetaev's equations*
+//! (1994), with its misprints corrected; conventions are those of [`pc_mech`]. Of k quasi-velocities, l are
+//! free and have indices r, s = 1..l; the other k − l are kept at zero and have indices α = l+1..k. The index
+//! m runs over all of them. The library is independent of units: any consistent units can be used.
 //!
 //! # Which constraints are nonholonomic
 //!
 //! A [`Constraint`](pc_mech::Constraint) is a condition on positions, f(t, x) = 0, or on velocities. Some
 //! conditions on velocities can be integrated, and some follow from others or contradict them. A
-//! [`ConstraintClassification`] says which: with X'_1..X'_l a basis of the velocities allowed and X'_0 one of
-//! them,
+//! [`ConstraintClassification`] says which of these is the case. If X'_1..X'_l is a basis of the allowed
+//! velocities and X'_0 is one of them,
 //!
 //! \[X'_r, X'_s\] = c'_rs^m X'_m + c'_rs^α X'_α, r, s = 0..l,
 //!
@@ -111,7 +111,7 @@
 //!
 //! # The constraints put in
 //!
-//! With θ = T for η_α = 0 the equations (30) are
+//! If θ is T for η_α = 0, the equations (30) are
 //!
 //! d/dt ∂θ/∂η_s = (c_rs^m η_r + c_0s^m) ∂θ/∂η_m + (c_rs^α η_r + c_0s^α)(∂T/∂η_α)_0 + X_s (θ + U) + Q_s, m ≤ l (32).
 //!

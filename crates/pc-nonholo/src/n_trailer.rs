@@ -10,9 +10,9 @@ use crate::reduction::constrained::Constrained;
 pub struct Wagon<'g> {
     /// Mass.
     pub mass: Expr<'g>,
-    /// Moment of inertia about the vertical through the mass centre.
+    /// The moment of inertia about the vertical through the mass centre.
     pub inertia: Expr<'g>,
-    /// The distance of the mass centre ahead of the axle.
+    /// The distance by which the mass centre is ahead of the axle.
     pub ahead: Expr<'g>,
 }
 

@@ -1,11 +1,11 @@
-//! The kinds of errors, by what can be done about them.
+//! The kinds of errors, according to what can be done about them.
 
 /// The kind of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Category {
     /// Two motions that were compared differ.
     Different,
-    /// The request is wrong, whatever the model.
+    /// What was requested is wrong, whatever the model.
     Request,
     /// The text of the model is wrong, or asks for something that cannot be done yet.
     Text,

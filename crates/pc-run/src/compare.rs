@@ -1,4 +1,4 @@
-//! Whether two motions are the same.
+//! Finds out whether two motions are the same.
 //!
 //! Two models, each with its options, are [`compared`](compared::Compared) by a `comparison` of the two runs, which
 //! finds a [`Difference`](difference::Difference) for each column that both have and for each pair of `formula`s.

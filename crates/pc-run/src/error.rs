@@ -56,26 +56,26 @@ pub enum RunError {
         /// The memory that they may take.
         limit: u64,
     },
-    /// Something wrong with the model.
+    /// Something is wrong with the model.
     #[error(transparent)]
     Model(#[from] ModelError),
     /// The equations disagree with a second derivation: one of the two is wrong, because of a
     /// defect of this program.
     #[error("{0}; no result is returned, because one of them is wrong through a defect of this program")]
     Verify(Box<VerifyError>),
-    /// Something wrong with a file.
+    /// Something is wrong with a file.
     #[error(transparent)]
     File(#[from] FileError),
-    /// Something wrong with checkpoints.
+    /// Something is wrong with checkpoints.
     #[error(transparent)]
     Checkpoints(#[from] CheckpointFileError),
-    /// Something wrong with a sweep.
+    /// Something is wrong with a sweep.
     #[error(transparent)]
     Sweep(#[from] SweepError),
-    /// Something wrong with a linearization or with equilibria.
+    /// Something is wrong with a linearization or with equilibria.
     #[error(transparent)]
     Linear(#[from] LinearError),
-    /// Motions that differ, or cannot be compared.
+    /// Motions differ, or cannot be compared.
     #[error(transparent)]
     Compare(#[from] CompareError),
     /// The integration could not continue.
@@ -86,7 +86,7 @@ pub enum RunError {
         cause: Box<SolveError>,
         /// Names of the components of the state.
         names: Vec<String>,
-        /// Whether forces jump where the state changes, as dry friction does.
+        /// Whether forces are discontinuous functions of the state, as dry friction is.
         jumps: bool,
         /// The velocity that has lost its inertia, and the fraction of it that is left.
         lost_inertia: Option<(String, f64)>,

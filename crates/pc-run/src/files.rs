@@ -1,4 +1,4 @@
-//! Files of results, written whole or not at all.
+//! Files of results, which are written completely or not at all.
 //!
 //! A `place` is examined before anything is computed; `atomic` writes there, using a `partial` file that replaces the old
 //! one as a whole. `rescue` saves a result that cannot be written to its place, and `kept` says where it was saved. A

@@ -29,8 +29,9 @@
 //!
 //! # Around it
 //!
-//! Below: [`pc_model`], the models; [`pc_verify`], the second derivation; [`pc_solve`], the motions; [`pc_analysis`],
-//! linearizations and equilibria; [`pc_report`], pictures and pages. Above: [pc-cli](../pc_cli/index.html), the program `pc`.
+//! Below: [`pc_model`] for the models, [`pc_verify`] for the second derivation, [`pc_solve`] for the motions, [`pc_analysis`]
+//! for linearizations and equilibria, and [`pc_report`] for pictures and pages. Above: [pc-cli](../pc_cli/index.html), the
+//! program `pc`.
 
 mod category;
 mod chain;

@@ -25,7 +25,7 @@ pub fn derivations() -> usize {
 }
 
 impl Model {
-    /// The mechanical system, its expressions in `graph`, and its start state.
+    /// The mechanical system of the model, with its expressions in `graph`, and its start state.
     ///
     /// # Errors
     /// [`ModelError`] at the place in the file that causes the error.

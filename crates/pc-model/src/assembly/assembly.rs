@@ -22,13 +22,14 @@ pub struct Assembly<'g> {
     pub constraints: ConstraintTreatment<'g>,
     /// Start time.
     pub t_start: f64,
-    /// Start state: coordinates, quasi-velocities, first-order states.
+    /// The start state: coordinates, quasi-velocities, first-order states.
     pub start: Vec<f64>,
     /// The start state as written, if it was moved onto the constraints.
     pub written_start: Option<Vec<f64>>,
-    /// Number of declared quasi-velocities, which come first; number of velocities if none is declared.
+    /// The number of declared quasi-velocities, which come first, or the number of velocities if none is
+    /// declared.
     pub declared: usize,
-    /// The events, in the order in which simultaneous ones are handled.
+    /// The events, in the order in which simultaneous events are handled.
     pub events: Vec<Event<'g>>,
     /// The definitions of the text, with ẋ = b η + b_0 substituted, except those that have different meanings
     /// in different places.
@@ -40,7 +41,7 @@ pub struct Assembly<'g> {
     /// The bodies whose masses change with time or first-order states: they obey D_t (m v) = F, so that the
     /// mass they lose or take up is at rest.
     pub changing_masses: Vec<String>,
-    /// The text, in which errors are located.
+    /// The text of the model, in which errors are located.
     pub(crate) document: Arc<Document>,
 }
 
@@ -52,10 +53,10 @@ impl<'g> Assembly<'g> {
         state.zip(self.start.iter().copied()).chain([(frame.time(), self.t_start)]).collect()
     }
 
-    /// The result of a derivation from this system, with an error located at the entry of the file that causes it.
+    /// The result of a derivation from this system; an error is located at the entry of the file that causes it.
     ///
     /// # Errors
-    /// [`ModelError`] for the error of the derivation.
+    /// [`ModelError`], made from the error of the derivation.
     pub fn placed<T>(&self, derived: Result<T, impl Into<NonholoError>>) -> Result<T, ModelError> {
         derived.map_err(|error| self.document.constraint_error(error.into()))
     }
@@ -72,7 +73,7 @@ impl<'g> Assembly<'g> {
     /// result is an error that names this stage, whatever `work` returns.
     ///
     /// # Errors
-    /// [`ErrorKind::Spent`](crate::ErrorKind::Spent), and the errors of the work.
+    /// [`ErrorKind::Spent`](crate::ErrorKind::Spent), and the errors of `work`.
     pub fn stage<T, E: From<ModelError>>(
         &self,
         name: &'static str,

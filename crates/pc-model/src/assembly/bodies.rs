@@ -1,4 +1,4 @@
-//! The bodies of a model: their expressions, resolved and checked in place.
+//! The bodies of a model: their expressions are resolved, and errors are located in the file.
 
 use pc_algebra::affine;
 use pc_mech::{Expr, Inertia, Matrix, Particle, RigidBody};

@@ -11,7 +11,7 @@ use crate::diagnostics::meaning::MeaningError;
 /// The reactions on bodies, each component with its name.
 #[derive(Default)]
 struct Resultants<'g> {
-    /// The components of all vectors that are not identically zero.
+    /// The components, apart from those of vectors that are identically zero.
     columns: Vec<(String, Expr<'g>)>,
     /// The symbols of all components with their values.
     known: Vec<(Expr<'g>, Expr<'g>)>,
@@ -25,7 +25,7 @@ impl<'g> Assembler<'g, '_> {
     /// undetermined reactions.
     ///
     /// # Errors
-    /// [`MeaningError::ForceNotDetermined`] if the model names an undetermined one.
+    /// [`MeaningError::ForceNotDetermined`] if the model names an undetermined reaction.
     pub(crate) fn with_resultants(
         &self,
         system: System<'g>,

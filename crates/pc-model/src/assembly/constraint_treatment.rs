@@ -64,7 +64,7 @@ impl<'g> ConstraintTreatment<'g> {
         ConstraintTreatment::nothing(Vec::new())
     }
 
-    /// Constraints without effect.
+    /// No constraint that binds; `redundant` are those that were dropped.
     pub(crate) fn nothing(redundant: Vec<Redundant>) -> ConstraintTreatment<'g> {
         ConstraintTreatment {
             formulation: ConstraintFormulation::Free,
@@ -128,8 +128,9 @@ impl<'g> ConstraintTreatment<'g> {
         }
     }
 
-    /// The multipliers of a formulation with the requested independent quasi-velocities, or with those whose
-    /// equations are [shortest](Multipliers::shortest) among the choices that are regular at the values `at`.
+    /// The equations of a formulation with multipliers, with the requested independent quasi-velocities or,
+    /// among the choices that are regular at the values `at`, those whose equations are
+    /// [shortest](Multipliers::shortest).
     fn chosen(
         &self,
         held: &MultiplierFormulation<'g>,
@@ -227,9 +228,9 @@ impl<'g> ConstraintTreatment<'g> {
         &self.undetermined
     }
 
-    /// The system in a frame in which the constraints make quasi-velocities vanish: that of the model if it is such
-    /// a frame, else the one that is best at the values `at` of time and state. None if there are no constraints,
-    /// only integrable ones enforced by multipliers, or some that are not affine in the velocities.
+    /// The system in a frame in which the constraints make quasi-velocities vanish: the frame of the model if it is
+    /// such a frame, otherwise the one that is best at the values `at` of time and state. None if there are no
+    /// constraints, only integrable ones enforced by multipliers, or some that are not affine in the velocities.
     ///
     /// # Errors
     /// [`NonholoError`] if there is no such frame.

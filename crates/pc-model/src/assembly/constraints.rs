@@ -103,7 +103,7 @@ impl<'g> Assembler<'g, '_> {
         }
     }
 
-    /// The constraints, in quasi-velocities.
+    /// The constraints, expressed in quasi-velocities.
     pub(super) fn in_quasi_velocities(
         &self,
         written: &[Written<'g>],
@@ -231,7 +231,7 @@ impl<'g> Assembler<'g, '_> {
         }
     }
 
-    /// The constraint, in quasi-velocities.
+    /// The constraint, expressed in quasi-velocities.
     fn constraint(&self, written: &Written<'g>, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Constraint<'g> {
         let value = self.graph.substitute(&[written.value], x_dot)[0];
         let (text, value) = (self.text_of(written), written.defines.unwrap_or(value));

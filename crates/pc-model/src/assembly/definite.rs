@@ -9,8 +9,8 @@ use crate::assembly::assembly::Assembly;
 const ROUNDING: f64 = 1e-12;
 
 impl<'g> Assembly<'g> {
-    /// Whether δη·M δη < 0, M = ∂²L/∂η∂η, for some velocity that the constraints allow at the start: then a mass or a
-    /// moment of inertia has the wrong sign.
+    /// Whether δη·M δη < 0, where M = ∂²L/∂η∂η, for some velocity that the constraints allow at the start: if so, a
+    /// mass or a moment of inertia has the wrong sign.
     pub fn has_negative_energy(&self) -> bool {
         let (system, graph) = (&self.system, self.system.graph());
         // M is a sum over bodies, which for a long chain is longer than the integrated equations.

@@ -92,7 +92,7 @@ impl<'g> Assembler<'g, '_> {
         Ok(definitions)
     }
 
-    /// The matrix a of the definitions.
+    /// The matrix a in the definitions η = a x' + a_0.
     fn coefficients_of(&self, definitions: &[Expr<'g>]) -> Result<Vec<Vec<Expr<'g>>>, ModelError> {
         let velocities = self.scope.velocities();
         let texts = self.model.document().quasi_velocities.iter().filter_map(|q| q.is.as_ref());

@@ -1,10 +1,10 @@
-//! Bodies whose orientation is a matrix of redundant coordinates: a rotation at the start, and along every
-//! motion from it.
+//! Checks on bodies whose orientation is a matrix of redundant coordinates: it must be a rotation at the
+//! start, and along every motion from there.
 //!
-//! With as many coordinates as quasi-velocities, RᵀR has to be a multiple of 1 everywhere, which the
-//! mechanics checks. Redundant coordinates, such as nine direction cosines, may give a rotation only on the
-//! surface that contains the motion, which is known from the start and from the operators X_s along the
-//! surface.
+//! If there are as many coordinates as quasi-velocities, RᵀR has to be a multiple of 1 everywhere, which is
+//! checked in the mechanics. Redundant coordinates, such as nine direction cosines, may give a rotation only
+//! on the surface that contains the motion, which is known from the start and from the operators X_s along
+//! the surface.
 
 use pc_algebra::Frame;
 use pc_mech::Expr;
@@ -21,8 +21,8 @@ use crate::names::stage::Stage;
 const OFF: f64 = 1e-10;
 
 impl<'g> Assembler<'g, '_> {
-    /// Checks that the matrices of bodies are rotations at the start, given by `values`, and remain so along
-    /// the frame.
+    /// Checks that the matrices of bodies are rotations at the start, given by `values`, and remain rotations
+    /// along the operators of the frame.
     pub(super) fn check_orientations(
         &mut self,
         frame: &Frame<'g>,

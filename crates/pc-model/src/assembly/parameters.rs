@@ -1,4 +1,4 @@
-//! The values of parameters and inputs: numbers, expressions in those before them, and tables.
+//! The values of parameters and inputs: numbers, expressions in the preceding ones, and tables.
 
 use std::sync::Arc;
 

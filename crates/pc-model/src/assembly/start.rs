@@ -22,14 +22,15 @@ const OFF: f64 = 1e-8;
 
 /// The parts of the start that are given.
 pub(super) struct Given {
-    /// Coordinates, then declared quasi-velocities, or velocities if none is declared; zero if not given.
+    /// The values of coordinates, then of the declared quasi-velocities, or of velocities if none is
+    /// declared; zero if not given.
     pub(super) values: Vec<f64>,
     /// Whether each of these values is given.
     is_given: Vec<bool>,
     /// Velocities of coordinates that are given in addition to quasi-velocities, in the order of
     /// `start_velocities`.
     velocities: Vec<f64>,
-    /// First-order states; zero if not given.
+    /// The values of first-order states; zero if not given.
     pub(super) states: Vec<f64>,
 }
 
@@ -37,7 +38,7 @@ pub(super) struct Given {
 /// velocities, and of the first-order states.
 ///
 /// # Errors
-/// [`ModelError`] if one is not a number.
+/// [`ModelError`] if a value is not a number.
 pub(crate) fn start(model: &Model, graph: &Graph) -> Result<Vec<f64>, ModelError> {
     let parameters: Vec<(Expr<'_>, f64)> =
         model.parameters().map(|(name, value)| (graph.symbol(name), value)).collect();
@@ -103,9 +104,9 @@ impl<'g> Assembler<'g, '_> {
         Err(self.scope.error(expression, expression.ast.span, fault))
     }
 
-    /// Coordinates and all quasi-velocities `eta` of the frame at the start. Quasi-velocities that are not
-    /// given are determined from given velocities, b η + b_0 = x', and from the constraints; if these leave
-    /// them open, the declared ones are zero.
+    /// The values at the start of the coordinates and of all quasi-velocities `eta` of the frame.
+    /// Quasi-velocities that are not given are determined from given velocities, b η + b_0 = x', and from the
+    /// constraints; if these leave them open, the declared ones are zero.
     ///
     /// # Errors
     /// [`MeaningError::StartVelocity`] for a velocity that the others contradict; [`MeaningError::StartOpen`]

@@ -1,4 +1,4 @@
-//! Bodies on joints: their expressions, resolved and checked in place.
+//! Bodies on joints: their expressions are resolved, and errors are located in the file.
 
 use pc_mech::{Expr, Inertia, Tree};
 

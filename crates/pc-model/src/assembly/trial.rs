@@ -1,4 +1,4 @@
-//! Whether a state satisfies the constraints.
+//! Finds out whether a state satisfies the constraints.
 
 use pc_mech::{CompileOptions, Constraint, Expr, MechError, System, VectorField};
 use pc_nonholo::ConstraintClassification;
@@ -97,7 +97,7 @@ impl<'g> Trial<'_, 'g> {
     /// Checks that the constraints and their rates have values.
     ///
     /// # Errors
-    /// [`MeaningError::NotFinite`] at the first that has no value.
+    /// [`MeaningError::NotFinite`] at the first constraint that has no value.
     pub(super) fn check_finite(&self, state: &[f64]) -> Result<(), ModelError> {
         for constraint in self.constraints {
             let value = self.value(constraint.velocity(self.system), state);
@@ -144,7 +144,7 @@ impl<'g> Trial<'_, 'g> {
     /// Checks that all constraints are satisfied.
     ///
     /// # Errors
-    /// [`MeaningError::OffConstraint`] at the first that is not satisfied.
+    /// [`MeaningError::OffConstraint`] at the first constraint that is not satisfied.
     pub(super) fn check(&self, state: &[f64]) -> Result<(), ModelError> {
         let off =
             |constraint: &Constraint<'g>| Some((constraint.name().to_owned(), self.off(constraint, state)?));

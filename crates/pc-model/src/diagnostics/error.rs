@@ -9,7 +9,7 @@ use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::source::{Place, Position, Source};
 use crate::document::is_hidden;
 
-/// A message about a place in a model file: an error, or a note.
+/// A message about a place in a model file: an error or a note.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
     /// Where.
@@ -86,7 +86,7 @@ impl ModelError {
         self.0.position
     }
 
-    /// Place, message and help, separately.
+    /// The place, the message and the help, separately.
     pub fn diagnostic(&self) -> &Diagnostic {
         &self.0.diagnostic
     }

@@ -1,4 +1,4 @@
-//! The kinds of errors in a model, with corrections.
+//! The kinds of errors in a model, and how to correct them.
 
 use std::fmt;
 
@@ -28,7 +28,7 @@ pub enum ErrorKind {
         /// A correction.
         help: &'static str,
     },
-    /// The same key twice in one table.
+    /// The same key is given twice in one table.
     #[error("`{key}` is given twice")]
     DuplicateKey {
         /// The key as written.
@@ -123,7 +123,7 @@ pub enum ErrorKind {
         /// What could be written instead, or with it.
         example: &'static str,
     },
-    /// A body that is not part of a tree.
+    /// A name that is not that of a body with a joint.
     #[error("no body with a joint is called `{name}`")]
     NotInTree {
         /// The name.
@@ -160,7 +160,7 @@ pub enum ErrorKind {
         first: &'static str,
         /// The other.
         second: &'static str,
-        /// When to use which.
+        /// A hint that says when to use which of them.
         help: &'static str,
     },
     /// A key that should be a name but is not.

@@ -8,7 +8,7 @@ use crate::diagnostics::words::{against, at, listed, rounded, undetermined_text}
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeaningError {
-    /// A name that is declared nowhere.
+    /// A name that is not declared anywhere.
     #[error("the name `{name}` is not declared")]
     UnknownName {
         /// The name.
@@ -22,7 +22,7 @@ pub enum MeaningError {
         /// The name.
         name: String,
     },
-    /// The velocity, kinematics or start velocity of something that is not a coordinate.
+    /// A velocity, kinematics or a start velocity given for something that is not a coordinate.
     #[error("`{name}` is not a coordinate, so `{name}'` means nothing")]
     NotACoordinate {
         /// The name.
@@ -58,7 +58,7 @@ pub enum MeaningError {
         /// The names that can be used.
         allowed: &'static str,
     },
-    /// d() of something that contains velocities, where accelerations are not allowed.
+    /// The rate d() of something that contains velocities, used where accelerations are not allowed.
     #[error("`d()` of velocities gives accelerations, which cannot be used in {place}")]
     Acceleration {
         /// A phrase for the place where it is used.
@@ -86,7 +86,7 @@ pub enum MeaningError {
         /// The expression as written.
         text: String,
     },
-    /// A constraint declared nonlinear that is not.
+    /// A constraint that is declared nonlinear but is not.
     #[error("the constraint `{constraint}` is called nonlinear and {what}")]
     NotNonlinear {
         /// Its name.
@@ -94,7 +94,7 @@ pub enum MeaningError {
         /// A phrase that says what it is instead.
         what: &'static str,
     },
-    /// A force or torque of a reaction on a body that virtual work does not determine.
+    /// A reaction force or torque on a body that virtual work does not determine.
     #[error(
         "`{name}` is not determined: the velocity of the body is tied to others by the choice of coordinates"
     )]
@@ -108,13 +108,13 @@ pub enum MeaningError {
         /// The definition as written.
         text: String,
     },
-    /// A quasi-velocity that is given twice in addition to the text.
+    /// A name given to two of the quasi-velocities requested in addition to the text.
     #[error("`{name}` is given twice")]
     GivenTwice {
         /// Its name.
         name: String,
     },
-    /// A quasi-velocity given in addition to the text that is not a linear form in the velocities.
+    /// A quasi-velocity, requested in addition to the text, that is not a linear form in the velocities.
     #[error("`{text}` is not linear in the velocities")]
     NotLinear {
         /// The definition as written.
@@ -140,7 +140,7 @@ pub enum MeaningError {
         /// The quasi-velocity.
         name: String,
     },
-    /// Kinematics given in two ways.
+    /// Kinematics that are given in two ways.
     #[error("the quasi-velocity `{name}` is defined by `is`, and [kinematics] is given too")]
     TwoKinematics {
         /// The quasi-velocity.
@@ -228,7 +228,7 @@ pub enum MeaningError {
         /// A correction.
         help: &'static str,
     },
-    /// A catalogue name that does not exist.
+    /// A name that is not in the catalogue of algebras.
     #[error("there is no algebra named `{name}`")]
     UnknownAlgebra {
         /// The name.
@@ -336,7 +336,7 @@ pub enum MeaningError {
     /// An energy, a frame or a constraint that is discontinuous.
     #[error("{message}")]
     Jumps {
-        /// What jumps, and where.
+        /// A text that says what is discontinuous, and where.
         message: String,
     },
     /// An axis without direction.
@@ -471,7 +471,7 @@ pub enum MeaningError {
     NotAnIntegral {
         /// The integral.
         name: String,
-        /// The time at which it was seen to change.
+        /// The time at which it was found to change.
         t: f64,
         /// Its rate of change.
         rate: f64,

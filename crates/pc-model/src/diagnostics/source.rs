@@ -1,4 +1,4 @@
-//! The text of a model file, and the display of a place in it.
+//! The text of a model file, and how a place in it is displayed.
 
 use std::ops::Range;
 
@@ -103,7 +103,7 @@ fn visible(c: char) -> char {
     if c.is_control() && c != '\t' { char::REPLACEMENT_CHARACTER } else { c }
 }
 
-/// White space as wide as the character.
+/// White space that is as wide as the character.
 fn blank(c: char) -> &'static str {
     match (c, width(c)) {
         ('\t', _) => "\t",

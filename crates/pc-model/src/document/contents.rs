@@ -151,7 +151,7 @@ pub struct Algebra {
     pub definition: AlgebraDefinition,
 }
 
-/// The two ways to give an algebra.
+/// The two ways in which an algebra can be given.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AlgebraDefinition {
     /// By its name in the catalogue.
@@ -219,15 +219,15 @@ pub struct Body {
     pub place: Place,
     /// Its mass.
     pub mass: Expression,
-    /// Position of the mass centre, or of a point of the body that is at rest.
+    /// The position of the mass centre, or of a point of the body that is at rest.
     pub position: [Expression; 3],
-    /// Inertia about `position`; given only with an orientation.
+    /// The inertia about `position`; given only with an orientation.
     pub inertia: Option<Inertia>,
     /// Its orientation.
     pub orientation: Option<Orientation>,
-    /// Force acting at `position`.
+    /// The force that acts at `position`.
     pub force: Option<[Expression; 3]>,
-    /// Torque, in the axes of the angular velocity; given only with an orientation.
+    /// The torque, in components along the axes of the angular velocity; given only with an orientation.
     pub torque: Option<[Expression; 3]>,
 }
 
@@ -332,7 +332,7 @@ impl Simulation {
 }
 
 impl Document {
-    /// The end of the file, where missing entries could be added.
+    /// The place at the end of the file, where missing entries could be added.
     pub fn end(&self) -> Place {
         let end = self.source.text().trim_end().len();
         Place { entry: String::new(), span: end..end }

@@ -18,7 +18,7 @@ pub struct Draw {
 /// A position, given by two or three expressions.
 pub type DrawnPlace = Vec<Expression>;
 
-/// A shape, given by expressions.
+/// A shape, described by expressions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DrawnShape {
     /// A dot whose size does not depend on its distance from the viewer.

@@ -17,7 +17,7 @@ pub struct Located<T> {
     pub place: Place,
 }
 
-/// A name and its place in the file, quotes excluded.
+/// A name and its place in the file, without quotes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Name {
     /// The name.

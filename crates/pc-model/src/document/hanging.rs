@@ -13,7 +13,7 @@ use crate::document::expression::{Expression, Located, Name, NamedExpression};
 use crate::document::joints::{TreeBody, WORLD, prime};
 use crate::document::loops::Loop;
 
-/// Adds the declarations of joints and loops to the document.
+/// Adds what joints and loops declare to the document.
 ///
 /// # Errors
 /// If a body is attached to one that does not exist, or the motion of a joint is also given elsewhere.

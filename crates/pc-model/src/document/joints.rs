@@ -22,7 +22,7 @@ pub struct TreeBody {
     pub mass: Option<Expression>,
     /// The position of the mass centre relative to the joint, in body axes; the joint itself if left out.
     pub center: Option<[Expression; 3]>,
-    /// Inertia about the mass centre, in body axes.
+    /// The inertia about the mass centre, in body axes.
     pub inertia: Option<Inertia>,
     /// The force at the mass centre, in components along fixed axes.
     pub force: Option<[Expression; 3]>,
@@ -73,7 +73,7 @@ pub(crate) fn prime(coordinate: &str) -> String {
     format!("{coordinate}'")
 }
 
-/// The kinds of joints, by the motions they allow.
+/// The kinds of joints, described by the motions that they allow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
     /// Nothing.
@@ -138,7 +138,7 @@ impl JointKind {
         ends.iter().map(|end| format!("{name}{end}")).collect()
     }
 
-    /// The names of its quasi-velocities, for coordinates of these names.
+    /// The names of the quasi-velocities of a joint called `name` whose coordinates have these names.
     pub(crate) fn quasi_velocities(self, name: &str, coordinates: &[String]) -> Vec<String> {
         let ends: &[&str] = match self {
             JointKind::Spherical => &["_ω1", "_ω2", "_ω3"],

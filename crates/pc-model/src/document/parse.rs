@@ -1,4 +1,4 @@
-//! From the text of a model to its document, section by section.
+//! Reads the text of a model as a document, section by section.
 //!
 //! ```
 //! use pc_model::{Document, Source};

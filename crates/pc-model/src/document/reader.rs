@@ -26,7 +26,7 @@ pub(super) struct Table<'a> {
 pub(super) struct Item<'a> {
     source: &'a Source,
     key: &'a str,
-    /// Bytes of the key as written, quotes included.
+    /// The bytes of the key as written, including quotes.
     key_span: Range<usize>,
     /// The path of the entry, and the bytes of its value.
     place: Place,
@@ -386,7 +386,7 @@ impl<'a> Item<'a> {
         })
     }
 
-    /// The value as a list of texts of any length.
+    /// The value as a list of strings; the list may have any length.
     pub(super) fn texts(
         &self,
         expected: &'static str,
@@ -398,7 +398,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// The value as a list of finite numbers of any length.
+    /// The value as a list of finite numbers; the list may have any length.
     pub(super) fn numbers(
         &self,
         expected: &'static str,

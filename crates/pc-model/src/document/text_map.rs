@@ -43,7 +43,7 @@ impl TextMap {
         Self { end: place.end, pieces: vec![Piece { decoded: 0..length, file: place }] }
     }
 
-    /// Place in the file of a place in the value.
+    /// The bytes in the file that correspond to these bytes of the value.
     pub fn locate(&self, span: Range<usize>) -> Range<usize> {
         let start = self.place(span.start).map_or(self.end, |(piece, file)| file.unwrap_or(piece.file.start));
         if span.end <= span.start {
@@ -65,11 +65,11 @@ impl TextMap {
     }
 }
 
-/// A pass over a literal that has already been accepted as TOML.
+/// A scan of a literal that has already been accepted as TOML.
 struct Scan<'a> {
     raw: &'a str,
     start: usize,
-    /// Offset in `raw`.
+    /// The offset in `raw`.
     at: usize,
     decoded: String,
     pieces: Vec<Piece>,

@@ -12,7 +12,7 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::model::model::Model;
 
-/// A stage of the work.
+/// The name of this stage of the work.
 const PROGRAM: &str = "the program of the equations";
 
 impl Model {
@@ -36,8 +36,8 @@ impl Model {
         }
     }
 
-    /// Compiles the equations with multipliers and evaluates them at the start (x, η, z) with all η,
-    /// which is returned with them.
+    /// Compiles the equations with multipliers and evaluates them at the start (x, η, z), which contains all
+    /// η and is returned with them.
     ///
     /// # Errors
     /// [`ModelError`] if they cannot be evaluated there.

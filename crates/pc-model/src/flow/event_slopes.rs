@@ -46,7 +46,7 @@ impl EventSlopes {
     /// x, free η, z).
     ///
     /// # Errors
-    /// [`ModelError`] if they cannot be compiled.
+    /// [`ModelError`] if the derivatives cannot be compiled.
     pub(super) fn new<'g>(
         model: &Model,
         assembly: &Assembly<'g>,

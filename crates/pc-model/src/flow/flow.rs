@@ -1,4 +1,4 @@
-//! The vector field that is integrated, its events, and the columns of a table of its states.
+//! The vector field to be integrated, its events, and the columns of a table of its states.
 
 use pc_mech::{LegendreTransform, MechError, Motion};
 

@@ -18,7 +18,7 @@ const DEPENDENT: f64 = 1e-6;
 pub struct FreeForm<'g> {
     /// The system.
     pub system: System<'g>,
-    /// The independent quasi-velocities of the model from which it was made, k of them.
+    /// The k independent quasi-velocities of the model from which the form was made.
     pub independent: Vec<Expr<'g>>,
     /// Each of the independent quasi-velocities as a function of time, coordinates and the quasi-velocities
     /// of the system.
@@ -228,7 +228,7 @@ impl<'g> Assembly<'g> {
     /// The motion of a form, made to stop at states that do not determine the velocities.
     ///
     /// # Errors
-    /// [`ModelError`], which does not occur for a form of this system.
+    /// [`ModelError`]; it does not occur for a form of this system.
     pub(crate) fn within_chart(&self, motion: Motion, form: &FreeForm<'g>) -> Result<Motion, ModelError> {
         let all = self.system.quasi_velocities();
         if form.system.frame().coordinates() != self.system.frame().coordinates() {

@@ -19,7 +19,7 @@ pub(super) struct Reading {
     pub(super) parameters: Vec<f64>,
     /// The conversion of momenta to quasi-velocities, if the state has momenta.
     pub(super) transform: Option<LegendreTransform>,
-    /// Storage for a state in quasi-velocities.
+    /// Storage space for a state in quasi-velocities.
     pub(super) room: Vec<f64>,
     /// The change of quasi-velocities, if those of the state are not those of the model.
     change: Option<Change>,
@@ -39,7 +39,7 @@ impl Reading {
     /// independent ones.
     ///
     /// # Errors
-    /// [`ModelError`] for a symbol without a value.
+    /// [`ModelError`] if a symbol has no value.
     pub(super) fn new<'g>(
         assembly: &Assembly<'g>,
         form: &FreeForm<'g>,

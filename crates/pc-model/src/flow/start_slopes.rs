@@ -17,7 +17,7 @@ impl Flow {
     /// The derivative ∂y₀/∂pⱼ of the start of this flow of a model with respect to number j of the
     /// [parameters](Model::parameters): the start of a column of sensitivities. It is a central difference of starts, since
     /// these may be expressions in parameters or may be moved onto constraints that contain parameters. No equation is
-    /// derived for it.
+    /// derived for this.
     ///
     /// # Errors
     /// [`ModelError`] if the model has no start for nearby values of the parameter, for example because the start
@@ -75,8 +75,8 @@ impl Flow {
     }
 
     /// The derivatives with respect to parameter number j of the columns [`names`](Flow::names), which are
-    /// coordinates, quasi-velocities and first-order states, for a state whose own derivative is `column`. Those that
-    /// are not components of the state are central differences, accurate to ten digits.
+    /// coordinates, quasi-velocities and first-order states, for a state whose own derivative is `column`. The
+    /// derivatives of columns that are not components of the state are central differences, accurate to ten digits.
     ///
     /// # Panics
     /// If there is no such parameter, or `column` does not have the length of the state.

@@ -5,7 +5,7 @@ use pc_mech::VectorField;
 use crate::document::tolerance::AbsoluteTolerance;
 use crate::flow::flow::Flow;
 
-/// The absolute tolerance of components of ordinary scale.
+/// The absolute tolerance of components whose scale is ordinary.
 pub const ORDINARY_TOLERANCE: f64 = 1e-12;
 
 /// The smallest tolerance, relative to the largest component: terms of this component in the rates of the

@@ -8,7 +8,7 @@ pub(crate) struct Robot {
     pub(crate) name: String,
     pub(crate) links: Vec<Link>,
     pub(crate) joints: Vec<Joint>,
-    /// Elements that a model cannot contain, each with how often it occurs.
+    /// Kinds of elements that a model cannot contain, each with the number of times that it occurs.
     pub(crate) left_out: Vec<(String, usize)>,
 }
 

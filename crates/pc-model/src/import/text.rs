@@ -336,8 +336,8 @@ fn list(numbers: &[f64]) -> String {
     format!("[{}]", numbers.join(", "))
 }
 
-/// R I Rᵀ, with R the rotation of the inertial's origin: only the three moments if the products
-/// vanish.
+/// The inertia matrix R I Rᵀ, where R is the rotation of the inertial's origin; only the three moments if the
+/// products of inertia vanish.
 fn along_axes_of_the_link(inertial: &Inertial) -> Vec<f64> {
     let [xx, yy, zz, xy, yz, xz] = inertial.inertia;
     let own = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];

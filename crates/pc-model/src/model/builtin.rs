@@ -113,7 +113,7 @@ impl Builtin {
         BUILTIN.iter().chain(TREES).chain(CLASSICS)
     }
 
-    /// The model of that name.
+    /// The built-in model with this name.
     pub fn named(name: &str) -> Option<&'static Builtin> {
         Builtin::all().find(|model| model.name == name)
     }

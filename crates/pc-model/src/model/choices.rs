@@ -40,7 +40,7 @@ impl Model {
         Ok(())
     }
 
-    /// Removes the quasi-velocities given by `[simulation]` of the text or by earlier calls.
+    /// Removes the quasi-velocities given in the section `[simulation]` of the text or by earlier calls.
     pub fn give_no_quasi_velocities(&mut self) {
         self.given.clear();
     }

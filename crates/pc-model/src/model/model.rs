@@ -14,7 +14,7 @@ use crate::model::given::GivenQuasiVelocity;
 pub struct Model {
     document: Arc<Document>,
     parameters: Parameters,
-    /// Start values other than those of the document, by their indices.
+    /// Start values that replace those of the document, each with its index.
     starts: Vec<(usize, f64)>,
     projects_start: bool,
     /// The indices of start values that stay fixed when the start is moved onto constraints.
@@ -76,7 +76,7 @@ impl Model {
         }
     }
 
-    /// Limits the memory and time of all further derivations of this model and its clones together.
+    /// Limits the memory and time that all further derivations of this model and its clones may use together.
     pub fn limit(&mut self, limits: Limits) {
         self.budget = Budget::new(limits);
     }
@@ -232,7 +232,7 @@ impl Model {
         self.starts.push((place, value));
     }
 
-    /// The start values other than those of the document, by their indices.
+    /// The start values that replace those of the document, each with its index.
     pub(crate) fn overridden_starts(&self) -> &[(usize, f64)] {
         &self.starts
     }

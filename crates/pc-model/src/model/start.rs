@@ -108,7 +108,7 @@ impl Model {
         }
     }
 
-    /// The names of the start values that are not to be moved.
+    /// The names of the start values that are held fixed.
     pub fn held_start_names(&self) -> Vec<String> {
         let names = self.start_names();
         self.held_starts().iter().map(|&place| names[place].clone()).collect()
@@ -137,9 +137,9 @@ impl Model {
         !document.constraints.is_empty() && !given.iter().enumerate().all(|(s, &given)| given || is_set(s))
     }
 
-    /// The start state (x, η, z) with the declared η, or (x, x', z) if none is: the values of
+    /// The start state (x, η, z) with the declared η, or (x, x', z) if none is declared: the values of the
     /// [`start_names`](Model::start_names) for the current parameters, whether or not they satisfy the constraints,
-    /// and 0 where none is given.
+    /// and 0 where no value is given.
     ///
     /// # Errors
     /// [`ModelError`] if a start value is not a number.

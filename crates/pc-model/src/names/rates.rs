@@ -1,4 +1,4 @@
-//! Rates in expressions: x' and d(f).
+//! Rates that occur in expressions: x' and d(f).
 
 use pc_expr::Expr;
 use pc_expr::parse::{Ast, Span};

@@ -72,7 +72,8 @@ impl Binding {
     /// follow from them, but never the other way round. [Nonlinear](Constraint::nonlinear) constraints bind,
     /// and no other follows from them.
     ///
-    /// `at` are values of time and coordinates where the motion starts, and possibly of other symbols.
+    /// `at` are the values of time and coordinates at which the motion starts, and possibly values of other
+    /// symbols.
     ///
     /// # Errors
     /// [`NonholoError::Contradictory`] for a constraint that no velocity satisfies together with
@@ -282,7 +283,7 @@ impl<'g> Found<'_, 'g> {
         Ok(())
     }
 
-    /// Whether a condition on positions vanishes around the start wherever the kept ones do.
+    /// Whether a condition on positions vanishes around the start wherever the conditions that were kept do.
     fn vanishes(&self, a: usize, start: &Place) -> bool {
         let holonomic =
             self.rows.places.iter().copied().filter(|&b| self.constraints[b].is_holonomic(self.system));

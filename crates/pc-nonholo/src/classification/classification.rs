@@ -36,7 +36,7 @@ pub struct ConstraintClassification<'g> {
 
 impl<'g> ConstraintClassification<'g> {
     /// Sorts the constraints of a system: by rank into [binding](Binding) and redundant ones, and by
-    /// Frobenius' test into holonomic and nonholonomic ones. With X'_1..X'_l and X'_0 a basis of the
+    /// Frobenius' test into holonomic and nonholonomic ones. If X'_1..X'_l and X'_0 are a basis of the
     /// velocities that all constraints allow,
     ///
     ///   [X'_r, X'_s] = c'_rs^m X'_m + c'_rs^α X'_α,   r, s = 0..l,
@@ -52,7 +52,7 @@ impl<'g> ConstraintClassification<'g> {
     /// `at` are values of time, coordinates, quasi-velocities and parameters where the constraints are regular.
     ///
     /// # Errors
-    /// [`NonholoError::Contradictory`] for a constraint that no velocity satisfies together with others;
+    /// [`NonholoError::Contradictory`] for a constraint that no velocity satisfies together with others; the
     /// errors of [`System::with_multipliers`] and [`Adapted::new`](crate::Adapted::new).
     pub fn new(
         system: &System<'g>,

@@ -60,7 +60,7 @@ impl<'g> Adapted<'g> {
         &self.system
     }
 
-    /// Number l of free quasi-velocities.
+    /// The number l of free quasi-velocities.
     pub fn free(&self) -> usize {
         self.free
     }

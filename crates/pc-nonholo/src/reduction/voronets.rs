@@ -1,4 +1,4 @@
-//! Voronets' equations (35) and Chaplygin's.
+//! Voronets' equations (35) and Chaplygin's equations.
 
 use pc_mech::{Equations, Expr, Graph, Matrix, Multipliers, System};
 
@@ -64,8 +64,8 @@ impl<'g> Voronets<'g> {
         })
     }
 
-    /// Voronets' equations for the independent velocities that make the equations shortest, as
-    /// [`Multipliers::shortest`] says.
+    /// Voronets' equations for the independent velocities that make the equations shortest, chosen as in
+    /// [`Multipliers::shortest`].
     ///
     /// # Errors
     /// As for [`new`](Voronets::new).

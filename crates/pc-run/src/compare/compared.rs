@@ -63,7 +63,7 @@ impl Compared {
         Ok(Compared { runs: [a, b], comparison })
     }
 
-    /// An error unless both motions were completed and do not differ.
+    /// An error unless both motions were completed and agree.
     ///
     /// # Errors
     /// [`CompareError::Different`], or the error of a motion.

@@ -98,7 +98,7 @@ impl Comparison {
         })
     }
 
-    /// Whether nothing differs by more than is allowed.
+    /// Whether nothing differs by more than the allowed amount.
     pub fn is_same(&self) -> bool {
         self.ends.is_none() && self.differences.iter().all(Difference::is_allowed)
     }

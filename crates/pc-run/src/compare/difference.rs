@@ -1,6 +1,6 @@
-//! The difference of two columns.
+//! The difference between two columns.
 
-/// The largest difference of two columns.
+/// The largest difference between two columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
     /// What is compared.
@@ -38,8 +38,8 @@ impl Allowance {
 }
 
 impl Difference {
-    /// The difference of the values (t, a, b). Up to each time, errors of integration change the values by at most the entry of
-    /// `uncertain`, and not at all after its last entry.
+    /// The difference between a and b in the values (t, a, b). Up to each time, errors of integration change the values by at
+    /// most the entry of `uncertain`, and not at all after its last entry.
     pub fn new(
         name: String,
         values: &[(f64, f64, f64)],

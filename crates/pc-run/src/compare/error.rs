@@ -8,10 +8,10 @@ use crate::category::Category;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CompareError {
-    /// One model in one form.
+    /// There is only one model in only one form.
     #[error("there is one motion only: give another model, or two forms as in `--form poincare,canonical`")]
     OneMotion,
-    /// More forms than models were given.
+    /// More forms were given than models.
     #[error("--form: {count} forms are given for two motions; give one or two")]
     Forms {
         /// How many.

@@ -1,4 +1,4 @@
-//! Files that are being written, beside those that they will replace.
+//! Files that are being written beside those that they will replace.
 //!
 //! The partial file of `a.csv` is `.a.csv.pc-a1B2c3.part`, with six random characters. It is locked as long
 //! as its process lives: one that is not locked was left behind by a run that was killed.

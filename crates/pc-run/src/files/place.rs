@@ -1,4 +1,4 @@
-//! The place of a result, examined before it is computed.
+//! The place of a result, which is examined before the result is computed.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind};

@@ -1,4 +1,4 @@
-//! Rescue of a result that cannot be written to its destination.
+//! Rescues a result that cannot be written to its destination.
 
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};

@@ -60,7 +60,7 @@ pub enum LinearError {
         /// The state at which the method ended.
         state: Vec<(String, f64)>,
     },
-    /// The start is not steady, and no other state is known to be reachable.
+    /// The start is not steady, and no other state is known to be reachable from it.
     #[error(
         "the start is not steady, as rates of norm {} show, and the functions of the coordinates that the frame keeps are not \
          known, so that no other state can be reached from it\n  help: declare these functions under [integrals], or start at \
@@ -117,7 +117,7 @@ pub enum LinearError {
         /// How many of them converged.
         converged: usize,
     },
-    /// Any other error of the analysis.
+    /// Any other error in the analysis.
     #[error(transparent)]
     Analysis(AnalysisError),
 }

@@ -111,7 +111,7 @@ impl Found {
     }
 }
 
-/// The components of a state that are shown: all but the quasi-velocities that vanish.
+/// The components of a state that are shown: all except the quasi-velocities that vanish.
 fn shown<'a>(names: &'a [String], found: &FoundEquilibrium, places: usize) -> Vec<(&'a str, f64)> {
     let all = names.iter().zip(&found.state).enumerate();
     let is_shown = |&(i, (_, value)): &(usize, (&String, &f64))| i < places || value.abs() > ZERO;

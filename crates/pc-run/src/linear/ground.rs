@@ -1,4 +1,4 @@
-//! From a model to its linearizer.
+//! Makes the linearizer of a model.
 
 use std::convert::Infallible;
 

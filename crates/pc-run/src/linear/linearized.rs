@@ -61,7 +61,7 @@ impl Linearized {
         })
     }
 
-    /// The linearization for people.
+    /// The linearization as text for people.
     pub fn text(&self) -> String {
         text::page(&self.title, &self.linear, self.stability.as_ref(), self.at != At::Start)
     }
@@ -78,12 +78,12 @@ impl Linearized {
         Value::from(all)
     }
 
-    /// A line for each number.
+    /// The linearization as a table with a line for each number.
     pub fn csv(&self) -> String {
         csv(&self.linear)
     }
 
-    /// Writes it to a file.
+    /// Writes the linearization to a file.
     ///
     /// # Errors
     /// [`FileError::Write`], which says where the result was kept.

@@ -95,7 +95,7 @@ impl Locus {
         }
     }
 
-    /// A line for each value.
+    /// The eigenvalues as text, with a line for each value.
     pub fn text(&self) -> String {
         let branches = self.locus.branches();
         let header = std::iter::once(self.name.clone()).chain((1..=branches.len()).map(|i| format!("λ{i}")));
@@ -165,7 +165,7 @@ impl Locus {
         }
     }
 
-    /// Writes it to a file.
+    /// Writes the locus to a file.
     ///
     /// # Errors
     /// [`FileError::Write`], which says where the result was kept.

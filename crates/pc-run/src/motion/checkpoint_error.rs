@@ -1,4 +1,4 @@
-//! Errors of checkpoints.
+//! Errors about checkpoints.
 
 use std::io;
 use std::path::PathBuf;
@@ -25,7 +25,7 @@ pub enum CheckpointFileError {
         /// Why.
         source: CheckpointError,
     },
-    /// The checkpoint is that of another run.
+    /// The checkpoint belongs to another run.
     #[error("--resume {}: the checkpoint is from a run with {what}; repeat that command, or start afresh without --resume", path.display())]
     OtherRun {
         /// The file.

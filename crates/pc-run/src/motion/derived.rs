@@ -11,7 +11,8 @@ use pc_report::dropped;
 pub struct Derived {
     /// The equations, with the values of the model.
     pub flow: Flow,
-    /// The equations as a prototype for other values; none if other values may change more than numbers.
+    /// The equations as a prototype for other values; none if other values may change more than the numbers
+    /// in them.
     pub prototype: Option<Arc<Prototype>>,
     /// Remarks on the equations.
     pub(crate) facts: Facts,
@@ -26,7 +27,8 @@ pub(crate) struct Facts {
     pub(crate) jumps: bool,
     /// Whether an event changes the state.
     pub(crate) has_resets: bool,
-    /// Whether nothing depends on time and neither forces nor events change the energy.
+    /// Whether the energy is conserved: nothing depends on time, and neither forces nor events change the
+    /// energy.
     pub(crate) keeps_energy: bool,
 }
 
@@ -46,7 +48,7 @@ impl Derived {
     /// The equations of an assembled model in a form.
     ///
     /// # Errors
-    /// [`ModelError`] at the place in the text that causes it.
+    /// [`ModelError`] at the place in the text that causes the error.
     pub fn of(model: &Model, assembly: &Assembly<'_>, form: Variables) -> Result<Derived, ModelError> {
         let flow = Flow::new(model, assembly, form)?;
         let prototype = Prototype::of(model, assembly, form, flow.clone()).map(Arc::new);

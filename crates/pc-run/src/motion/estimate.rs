@@ -19,7 +19,7 @@ const TOLERANCES: f64 = 10.0;
 /// A summary of the global errors of a motion; the table contains these errors row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
-    /// The method of the companion.
+    /// The integration method of the companion.
     pub method: Method,
     /// Its relative tolerance.
     pub rtol: f64,
@@ -29,7 +29,7 @@ pub struct Estimate {
     pub grown: Option<f64>,
     /// The times of the rows before which an event occurred in only one of the two motions.
     pub beyond_events: Vec<f64>,
-    /// Why later rows have no errors.
+    /// The reason why later rows have no errors, if that is so.
     pub incomplete: Option<String>,
 }
 

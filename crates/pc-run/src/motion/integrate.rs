@@ -1,4 +1,4 @@
-//! From a model and its plan to a run.
+//! Integrates the motion of a model according to a plan.
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -53,8 +53,9 @@ impl Besides {
 }
 
 impl Run {
-    /// Derives, compiles and integrates the motion of a model. Whatever the form, the table shows
-    /// quasi-velocities. If there are too many rows for memory, they go to the `stream` as they are computed.
+    /// Derives, compiles and integrates the motion of a model. The table shows quasi-velocities, whatever the
+    /// form of the equations. If there are too many rows for memory, they go to the `stream` as they are
+    /// computed.
     ///
     /// # Errors
     /// [`RunError`] if there is no motion at all, or the second derivation disagrees; an incomplete motion is

@@ -9,7 +9,7 @@ pub struct LostIntegral {
     pub start: f64,
     /// The largest change from this value.
     pub drift: f64,
-    /// The scale of its terms: for the energy, the largest kinetic energy or the range of the rest, whichever
-    /// is larger.
+    /// The scale of its terms: for the energy, the largest kinetic energy or the range of the remaining
+    /// energy, whichever is larger.
     pub scale: f64,
 }

@@ -9,7 +9,7 @@ use crate::motion::lost::LostIntegral;
 use crate::motion::table::Table;
 use crate::plan::tolerances::Tolerances;
 
-/// The fraction of its scale by which an integral may drift.
+/// The largest drift allowed, as a fraction of the scale of the integral.
 const MOST: f64 = 1e-3;
 
 /// A drift of this many units in the last place of the terms of an integral is rounding error, as with a large

@@ -1,4 +1,4 @@
-//! The table of a run as a file.
+//! Writes the table of a run to a file.
 
 use std::io::{self, Write};
 

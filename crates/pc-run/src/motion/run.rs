@@ -59,7 +59,7 @@ pub struct Run {
     pub lost: Option<LostIntegral>,
     /// If the motion failed, the velocity that has lost its inertia and the fraction of it that is left.
     pub lost_inertia: Option<(String, f64)>,
-    /// The result of the second derivation, if it was made.
+    /// The result of the comparison with a second derivation, if there was one.
     pub verification: Option<Verification>,
     /// The work done.
     pub statistics: Statistics,

@@ -83,7 +83,7 @@ impl<'s, 'p> Streamed<'s, 'p> {
     }
 }
 
-/// Raises the largest residuals to those at (t, y).
+/// Raises the largest residuals to those at (t, y), where these are larger.
 pub(crate) fn note_residuals(worst: &mut [(String, f64)], flow: &mut Flow, t: f64, y: &[f64]) {
     for ((_, worst), residual) in worst.iter_mut().zip(flow.constraint_residuals(t, y)) {
         *worst = raised(*worst, residual);

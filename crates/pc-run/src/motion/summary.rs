@@ -76,7 +76,7 @@ pub fn entries(run: &Run) -> Vec<(&'static str, Vec<String>)> {
 
 const WORK: &str = "work";
 
-/// The choices of the method `auto`, or a remark if DOP853 met a stiff motion.
+/// The lines about the choices made by the method `auto`, or a remark if DOP853 met a stiff motion.
 fn chosen(run: &Run) -> Vec<String> {
     let (plan, work) = (&run.plan, &run.statistics);
     let times = |n: u64| if n == 1 { "once".to_owned() } else { format!("{n} times") };
@@ -227,7 +227,7 @@ fn errors(run: &Run) -> Vec<String> {
     lines
 }
 
-/// The error of a column.
+/// The error of a column in one row.
 struct LastError {
     absolute: f64,
     /// The error divided by the largest value of the column.

@@ -27,9 +27,9 @@ pub struct Table {
 /// The values of a column that are not finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NotFinite {
-    /// The first of them.
+    /// The first value that is not finite.
     pub value: f64,
-    /// The time of this value.
+    /// The time of the first of these values.
     pub t: f64,
     /// How many rows have no finite value.
     pub rows: usize,
@@ -81,7 +81,7 @@ impl Table {
         table
     }
 
-    /// The rows of these states.
+    /// A table with the rows of these states.
     pub(crate) fn of_states(flow: &mut Flow, states: &[(f64, Vec<f64>)]) -> Table {
         let mut table = Table::of(flow);
         for (t, y) in states {
@@ -97,7 +97,7 @@ impl Table {
         Table { streamed: Some(streamed), ..Table::of(flow) }
     }
 
-    /// Replaces the last row by that of a state.
+    /// Replaces the last row by the row of a state.
     pub(crate) fn give(&mut self, flow: &mut Flow, t: f64, y: &[f64]) {
         self.values.clear();
         self.values.push(t);
@@ -266,6 +266,6 @@ pub struct Drift {
     pub start: f64,
     /// max |I(t) − I(t_start)|
     pub absolute: f64,
-    /// The same, divided by |I(t_start)| if that is larger.
+    /// The same, divided by |I(t_start)|; none unless this is larger.
     pub relative: Option<f64>,
 }

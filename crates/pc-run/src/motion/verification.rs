@@ -1,4 +1,4 @@
-//! The result of the second derivation.
+//! Comparisons with a second derivation.
 
 use pc_mech::Equations;
 use pc_model::{Assembly, Flow, Model, Variables};

@@ -43,7 +43,7 @@ pub(crate) fn allow(rows: u64, numbers: u64, limits: &Limits) -> Result<(), RunE
 /// Rows that take more bytes than this are written as they are computed, if possible.
 const MUCH: u64 = 64 << 20;
 
-/// Whether rows should be written as they are computed.
+/// Whether rows take so much memory that they should be written as they are computed.
 pub(crate) fn is_much(rows: u64, numbers: u64, limits: &Limits) -> bool {
     rows.saturating_mul(numbers).saturating_mul(size_of::<f64>() as u64) > MUCH.min(limits.memory)
 }

@@ -1,4 +1,4 @@
-//! The options of a run; the text of the model and the defaults supply the rest.
+//! The options of a run; everything else is supplied by the text of the model and the defaults.
 
 use pc_model::Variables;
 use pc_model::document::AbsoluteTolerance;

@@ -1,4 +1,4 @@
-//! The properties of each member, as `pc check` finds them.
+//! Finds the properties of each member, as `pc check` does.
 
 use std::ops::Range;
 

@@ -81,7 +81,7 @@ impl Design {
         Ok(Design { targets: targets(model, names)?, values: Values::Listed(values), members })
     }
 
-    /// Number of members.
+    /// The number of members.
     pub fn members(&self) -> u64 {
         self.members
     }

@@ -11,7 +11,7 @@ use crate::sweep::picture_error::SweepPlotError;
 use crate::sweep::shard::Shard;
 use crate::sweep::sheet::Misshapen;
 
-/// Why a sweep was not begun or not completed.
+/// Why a sweep was not begun or was not completed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SweepError {
@@ -87,10 +87,10 @@ pub enum SweepError {
         path: PathBuf,
         /// The other.
         other: PathBuf,
-        /// What is different.
+        /// A phrase that says what is different.
         what: String,
     },
-    /// A shard is given twice.
+    /// The same shard is given twice.
     #[error("the shard {shard} is there twice: {} and {}", paths[0].display(), paths[1].display())]
     ShardTwice {
         /// Which.

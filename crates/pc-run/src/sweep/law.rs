@@ -17,11 +17,11 @@ pub struct Random {
 /// A distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Law {
-    /// Mean and standard deviation.
+    /// The mean and the standard deviation.
     Normal(f64, f64),
     /// The smallest and the largest value.
     Uniform(f64, f64),
-    /// Mean and standard deviation of the logarithm.
+    /// The mean and the standard deviation of the logarithm.
     LogNormal(f64, f64),
 }
 

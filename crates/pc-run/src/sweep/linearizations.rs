@@ -1,4 +1,4 @@
-//! The eigenvalues of each member.
+//! Finds the eigenvalues of each member.
 
 use std::ops::Range;
 

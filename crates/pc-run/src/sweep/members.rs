@@ -72,7 +72,7 @@ impl Members {
     }
 }
 
-/// The error, without its place in the file.
+/// The message of an error, without its place in the file.
 pub(crate) fn message(error: &RunError) -> String {
     match error {
         RunError::Model(error) => error.diagnostic().message.clone(),

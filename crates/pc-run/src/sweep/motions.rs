@@ -1,4 +1,4 @@
-//! The motion of each member.
+//! Integrates the motion of each member.
 
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;

@@ -69,7 +69,7 @@ fn is_time(sheet: &Sheet, j: usize) -> bool {
     sheet.of() == SweepOf::Run && j == 0
 }
 
-/// What a curve, a colour or a bar shows about a member.
+/// A phrase for what a curve, a colour or a bar shows about a member.
 fn shown(of: SweepOf) -> &'static str {
     match of {
         SweepOf::Run => "At the end",
@@ -260,7 +260,7 @@ fn paths(finished: &[Member], k: usize, name: &str, label: &dyn Fn(&Member) -> S
     Panel::over("t", name, Scale::Linear, (0..count).map(curve).collect())
 }
 
-/// A colour for each pair of values.
+/// A coloured cell for each pair of values.
 fn cells(
     finished: &[Member],
     [(a, x), (b, y)]: [(usize, &str); 2],

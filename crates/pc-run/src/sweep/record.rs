@@ -19,7 +19,7 @@ impl Status {
     const ALL: [Status; 5] =
         [Status::Completed, Status::Failed, Status::Refused, Status::Panicked, Status::Event];
 
-    /// Its name in the table.
+    /// The name of the status in the table.
     pub fn word(self) -> &'static str {
         match self {
             Status::Completed => "completed",
@@ -34,7 +34,7 @@ impl Status {
 /// A finished member.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
-    /// Its number, from 0.
+    /// Its number, counted from 0.
     pub member: u64,
     /// How it ended.
     pub status: Status,

@@ -1,4 +1,4 @@
-//! All shards of a sweep, as one table.
+//! Puts all shards of a sweep together as one table.
 
 use std::io;
 use std::path::{Path, PathBuf};

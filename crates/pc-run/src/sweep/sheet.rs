@@ -67,7 +67,7 @@ impl Sheet {
         json!([self.of.word(), self.varied, self.results, columns]).to_string()
     }
 
-    /// The sheet from its text.
+    /// Reads a sheet from its text.
     pub(crate) fn from_text(text: &str) -> Option<Sheet> {
         type Parts = (String, usize, usize, Vec<(String, u8)>);
         let (of, varied, results, columns): Parts = serde_json::from_str(text).ok()?;

@@ -11,7 +11,7 @@ pub struct Vary {
     pub values: Values,
 }
 
-/// The values of a varied quantity, at least one.
+/// The values of a varied quantity, of which there is at least one.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
     /// This many values from one number to another, evenly spaced.

@@ -4,7 +4,8 @@
 //! Design ─ values of a member ─► Work ─ its motion, eigenvalues or properties ─► Record ─► Journal ─► table
 //!          on all cores, by pc_solve::Ensemble                       in the order of the members
 //! ```
-//! The journal is the only link between a member and the table, so a sweep may end at any moment and continue later.
+//! The journal is the only link between a member and the table, so a sweep may be interrupted at any moment and
+//! continued later.
 
 use std::num::NonZeroUsize;
 use std::ops::{ControlFlow, Range};

@@ -5,7 +5,7 @@ use std::io;
 /// The kind of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// Whole numbers, not negative.
+    /// Whole numbers that are not negative.
     Integer,
     /// Numbers.
     Number,
@@ -49,16 +49,16 @@ pub trait Rows {
     /// Its columns.
     fn columns(&self) -> Vec<Column>;
 
-    /// How many rows there are, if that is known without reading them.
+    /// The number of rows, if it is known without reading them.
     fn count(&self) -> Option<u64>;
 
-    /// Gives each row to `take`.
+    /// Passes each row to `take`.
     ///
     /// # Errors
     /// [`io::Error`] from `take`, or from the source of the rows.
     fn each(&self, take: Take<'_>) -> io::Result<()>;
 
-    /// Gives each cell of column `j` to `take`.
+    /// Passes each cell of column `j` to `take`.
     ///
     /// # Errors
     /// As for [`each`](Rows::each).
