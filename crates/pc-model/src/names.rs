@@ -3,7 +3,7 @@
 //! An expression in the text becomes an expression in the graph. Read `stage` first: which names an
 //! expression may contain, depending on its place in the text. `scope` gives the meaning of a name there,
 //! `functions` that of a function, and `rates` that of derivatives with respect to time; `definitions`
-//! resolves definitions in their order; `points` makes points of bodies with joints functions of the
+//! resolves definitions in their order; `points` expresses points of bodies with joints as functions of the
 //! coordinates.
 
 pub(crate) mod definitions;

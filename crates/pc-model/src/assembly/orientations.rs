@@ -1,10 +1,10 @@
 //! Checks on bodies whose orientation is a matrix of redundant coordinates: it must be a rotation at the
 //! start, and along every motion from there.
 //!
-//! If there are as many coordinates as quasi-velocities, RᵀR has to be a multiple of 1 everywhere, which is
-//! checked in the mechanics. Redundant coordinates, such as nine direction cosines, may give a rotation only
-//! on the surface that contains the motion, which is known from the start and from the operators X_s along
-//! the surface.
+//! If there are as many coordinates as quasi-velocities, RᵀR has to be a multiple of 1 everywhere, which
+//! `pc_mech` checks. Redundant coordinates, such as nine direction cosines, may give a rotation only on the
+//! surface that contains the motion, which is known from the start and from the operators X_s along the
+//! surface.
 
 use pc_algebra::Frame;
 use pc_mech::Expr;

@@ -11,9 +11,9 @@ use crate::plan::Plan;
 use crate::plan::tolerances::Tolerances;
 use pc_print::short;
 
-/// An error counts as grown to the size of the motion if it exceeds this fraction of the largest values …
+/// An error counts as grown to the size of the motion if it exceeds this fraction of the largest values.
 const GROWN: f64 = 0.1;
-/// … and this many absolute tolerances.
+/// An error that has grown to the size of the motion also exceeds this many absolute tolerances.
 const TOLERANCES: f64 = 10.0;
 
 /// A summary of the global errors of a motion; the table contains these errors row by row.

@@ -12,8 +12,8 @@ use crate::observer::Observer;
 /// Finds the properties of a model and compares them with a second derivation.
 ///
 /// # Errors
-/// [`RunError::Verify`] if that disagrees; [`RunError::Model`] if something about the model cannot be
-/// derived.
+/// [`RunError::Verify`] if the second derivation disagrees; [`RunError::Model`] if something about the model
+/// cannot be derived.
 pub fn checked<'g>(
     model: &Model,
     assembly: &Assembly<'g>,

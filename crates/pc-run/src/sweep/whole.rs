@@ -158,7 +158,7 @@ impl Sweep {
     /// each.
     ///
     /// # Errors
-    /// [`RunError::Verify`] if that disagrees.
+    /// [`RunError::Verify`] if a second derivation disagrees.
     pub fn vouched(&self) -> Result<(), RunError> {
         self.work.vouched()
     }

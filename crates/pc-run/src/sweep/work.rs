@@ -21,7 +21,7 @@ pub(crate) trait Work {
     /// Compares some members with a second derivation of each, before any member begins.
     ///
     /// # Errors
-    /// [`RunError::Verify`] if that disagrees.
+    /// [`RunError::Verify`] if a second derivation disagrees.
     fn vouched(&self) -> Result<(), RunError>;
 
     /// The number of rows of a member.
