@@ -1,11 +1,12 @@
-//! The text of a model as a typed document: every entry with its place, names not yet resolved.
+//! The text of a model as a typed document: every entry has its place in the file, and names are not yet
+//! resolved.
 //!
-//! TOML becomes a [`Document`]. Read the result first: `expression`, with the places that `text_map` finds in
-//! the file, and `contents`, section by section; `run_settings` has the defaults of a run. Then see how it is read: `reading` reads bytes, `syntax` TOML, `reader`
-//! gives typed access to it, `hidden` lists characters that labels cannot have; `sections`, `bodies`, `tree` with its
-//! `joints` and their `inertia`, `loops`, `inputs`, `draw` and `simulation`, with its `tolerance`s, read the sections,
+//! TOML becomes a [`Document`]. Read the result first: `expression`, whose parts `text_map` locates in the file, and
+//! `contents`, section by section; `run_settings` has the defaults of a run. Then see how it is read: `reading` reads bytes, `syntax` parses TOML, `reader` gives
+//! typed access to it, and `hidden` lists characters that labels must not contain. `sections`, `bodies`, `tree` with its
+//! `joints` and their `inertia`, `loops`, `inputs`, `draw` and `simulation`, with its `tolerance`s, read the sections;
 //! `hanging` declares the coordinates of joints, `checks` tests conditions between the sections, and `parse` combines
-//! these. `schema` is the format for editors.
+//! all of these. `schema` describes the format for editors.
 
 pub(crate) mod bodies;
 pub(crate) mod checks;

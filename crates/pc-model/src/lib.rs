@@ -1,10 +1,10 @@
-//! The text model: TOML to a mechanical system, with spans in every error.
+//! Text models: from TOML to a mechanical system, with the place in the file in every error.
 //! `docs/model-format.md` explains the format.
 //!
-//! A [`Document`] is the contents of the text, section by section. A [`Model`] is a document with the values
-//! of its parameters; [assembled](Model::assemble) in a graph, it is an [`Assembly`]: a
+//! A [`Document`] holds the contents of the text, section by section. A [`Model`] is a document with the
+//! values of its parameters; [assembled](Model::assemble) in a graph, it is an [`Assembly`]: a
 //! [`System`](pc_mech::System) in quasi-velocities with its start, the constraints, and the way in which they
-//! [bind](ConstraintTreatment) it. Any consistent units will do.
+//! [bind](ConstraintTreatment) it. Any consistent units can be used.
 //!
 //! ```
 //! use pc_mech::Graph;
@@ -27,9 +27,10 @@
 //!
 //! # Around it
 //!
-//! Below: [`pc_nonholo`] and [`pc_mech`], what a text becomes. Above: [pc-print](../pc_print/index.html), its equations in print;
-//! [pc-verify](../pc_verify/index.html), its equations derived once more; [pc-fmu](../pc_fmu/index.html), the same model for other
-//! programs; [pc-cli](../pc_cli/index.html), the program `pc`.
+//! Below: [`pc_nonholo`] and [`pc_mech`], into whose objects the text of a model is translated. Above:
+//! [pc-print](../pc_print/index.html), which prints its equations; [pc-verify](../pc_verify/index.html), which derives them a
+//! second time; [pc-fmu](../pc_fmu/index.html), which exports the model to other programs; [pc-cli](../pc_cli/index.html), the
+//! program `pc`.
 
 mod assembly;
 mod deep;

@@ -3,15 +3,15 @@
 /// The variables of the state in addition to the coordinates, which decide the equations of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Variables {
-    /// The quasi-velocities of (9), or of (30): independent ones if constraints make the others vanish, all of them
-    /// with multipliers otherwise.
+    /// The quasi-velocities of (9) or (30): the independent ones if constraints make the others vanish, otherwise
+    /// all of them, with multipliers.
     QuasiVelocities,
-    /// The momenta of (10), those of the same quasi-velocities.
+    /// The momenta of (10) that belong to the same quasi-velocities.
     Momenta,
-    /// The quasi-velocities of (9) without the coordinates that nothing depends on: Euler–Poincaré's equations if
-    /// none is left.
+    /// The quasi-velocities of (9), without the coordinates on which nothing depends: the Euler–Poincaré
+    /// equations if no coordinate is left.
     Reduced,
-    /// The momenta of the same: Lie–Poisson equations.
+    /// The momenta that belong to these quasi-velocities: the Lie–Poisson equations if no coordinate is left.
     ReducedMomenta,
     /// Quasi-velocities that are orthonormal in the kinetic metric.
     Orthonormal,
@@ -41,7 +41,8 @@ impl Variables {
         matches!(self, Variables::QuasiVelocities | Variables::Momenta)
     }
 
-    /// The name of their form of the equations in model files, on command lines and in Python.
+    /// The name of the form of the equations in these variables, in model files, on command lines and in
+    /// Python.
     pub fn name(self) -> &'static str {
         match self {
             Variables::QuasiVelocities => "poincare",

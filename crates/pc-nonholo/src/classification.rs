@@ -1,9 +1,9 @@
 //! Classification of constraints: which bind, which are redundant, which are integrable.
 //!
-//! Conditions on positions and velocities are classified: `classification` by Frobenius' test, with `reach`,
-//! the allowed velocities, `involutive`, the directions that these reach by commutators, and `binding`, the
-//! constraints that bind the motion at a state found by `positions`. `combinations` finds constraints that
-//! are integrable together.
+//! `classification` classifies conditions on positions and velocities by Frobenius' test. It uses `binding`,
+//! which finds the constraints that bind the motion, with the help of states found by `positions`; `reach`,
+//! the allowed velocities; and `involutive`, the directions that these reach by commutators. `combinations`
+//! finds constraints that are integrable together.
 
 pub(crate) mod binding;
 pub(crate) mod classification;

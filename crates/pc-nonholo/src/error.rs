@@ -1,23 +1,23 @@
-//! Errors of constraints.
+//! Errors about constraints.
 
 use pc_mech::MechError;
 
 /// An error of this crate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NonholoError {
-    /// A constraint on something that is not a quasi-velocity of the system.
+    /// A symbol that is to vanish but is not a quasi-velocity of the system.
     #[error("`{name}` is not a quasi-velocity of the system")]
     NotAQuasiVelocity {
         /// Its text.
         name: String,
     },
-    /// The same constraint twice.
+    /// A quasi-velocity that is listed twice among those that are to vanish.
     #[error("`{name}` is constrained twice")]
     Twice {
         /// The quasi-velocity.
         name: String,
     },
-    /// Voronets' equations were requested in quasi-velocities.
+    /// Voronets' equations were requested for a system in quasi-velocities.
     #[error("Voronets' equations are those of a system in the velocities of its coordinates")]
     NotInVelocities,
     /// A form of the equations that requires constraints affine in the velocities.
@@ -25,7 +25,7 @@ pub enum NonholoError {
     Nonlinear {
         /// The requested form.
         form: &'static str,
-        /// The name of the first constraint that is not.
+        /// The name of the first constraint that is not affine.
         constraint: String,
     },
     /// A constraint that no velocity satisfies together with others.
@@ -33,7 +33,7 @@ pub enum NonholoError {
     Contradictory {
         /// Its name.
         constraint: String,
-        /// The constraints that leave no velocity for it; empty if it leaves none by itself.
+        /// The constraints that it contradicts; empty if no velocity satisfies it even by itself.
         others: Vec<String>,
     },
     /// An error of the derivation.

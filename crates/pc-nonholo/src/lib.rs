@@ -1,16 +1,16 @@
 //! Nonholonomic constraints in quasi-velocities: their classification, equations of motion, reactions.
 //!
-//! Numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994), with its
-//! misprints corrected; conventions are those of [`pc_mech`]. Of k quasi-velocities l are free, counted by r,
-//! s = 1..l, and k − l are kept at zero, counted by α = l+1..k; m counts all of them. The library is
-//! unit-agnostic: any consistent units will do.
+//! Numbers in brackets are those of the equations in V. V. Rumyantsev, *On Poincaré–Chetaev's equations*
+//! (1994), with its misprints corrected; conventions are those of [`pc_mech`]. Of k quasi-velocities, l are
+//! free and have indices r, s = 1..l; the other k − l are kept at zero and have indices α = l+1..k. The index
+//! m runs over all of them. The library is independent of units: any consistent units can be used.
 //!
 //! # Which constraints are nonholonomic
 //!
-//! A [`Constraint`](pc_mech::Constraint) is a condition f(t, x) = 0, or one on velocities. Some conditions on
-//! velocities can be integrated, and some follow from others or contradict them. A
-//! [`ConstraintClassification`] says which: with X'_1..X'_l a basis of the velocities allowed and X'_0 one of
-//! them,
+//! A [`Constraint`](pc_mech::Constraint) is a condition on positions, f(t, x) = 0, or on velocities. Some
+//! conditions on velocities can be integrated, and some follow from others or contradict them. A
+//! [`ConstraintClassification`] says which of these is the case. If X'_1..X'_l is a basis of the allowed
+//! velocities and X'_0 is one of them,
 //!
 //! \[X'_r, X'_s\] = c'_rs^m X'_m + c'_rs^α X'_α, r, s = 0..l,
 //!
@@ -46,9 +46,8 @@
 //!
 //! d/dt ∂L/∂η_s = (c_rs^m η_r + c_0s^m) ∂L/∂η_m + X_s L + Q_s, r, s = 1..l, m = 1..k (30),
 //!
-//! where the constraints are substituted after differentiation, so that all k momenta count.
-//! [`Constrained`] derives them, and the reactions, which are the residuals of the dropped
-//! equations,
+//! where the constraints are substituted after differentiation, so that all k momenta appear. [`Constrained`]
+//! derives them, and the reactions, which are the residuals of the dropped equations,
 //!
 //! λ_α = D_t p_α − (c_rα^m η_r + c_0α^m) p_m − X_α L − Q_α.
 //!
@@ -79,8 +78,9 @@
 //!
 //! # Adapted frames
 //!
-//! Constraints C η + c_0 = 0 that are not quasi-velocities are made so: [`Adapted`] takes their left-hand sides as the
-//! last quasi-velocities, after those that stay independent. The equations above then apply.
+//! Constraints C η + c_0 = 0 whose left-hand sides are not quasi-velocities are brought to the form η_α = 0:
+//! [`Adapted`] takes their left-hand sides as the last quasi-velocities, after those that stay independent. The
+//! equations above then apply.
 //!
 //! ```
 //! use pc_mech::{Constraint, Graph, System};
@@ -111,13 +111,14 @@
 //!
 //! # The constraints put in
 //!
-//! With θ = T for η_α = 0 the equations (30) are
+//! If θ is T for η_α = 0, the equations (30) are
 //!
 //! d/dt ∂θ/∂η_s = (c_rs^m η_r + c_0s^m) ∂θ/∂η_m + (c_rs^α η_r + c_0s^α)(∂T/∂η_α)_0 + X_s (θ + U) + Q_s, m ≤ l (32).
 //!
-//! Without the second term, as if the constraints had been substituted into L first, they would be wrong.
-//! [`Constrained::free_system`] counts this term among the forces: it is a complete [`System`](pc_mech::System) of l
-//! quasi-velocities, whose canonical equations are (34). Its bracket does not satisfy Jacobi's identity.
+//! Without the second term, as if the constraints had been substituted into L before differentiation, they would be
+//! wrong. [`Constrained::free_system`] counts this term among the forces: it is a complete
+//! [`System`](pc_mech::System) of l quasi-velocities, whose canonical equations are (34). Its bracket does not
+//! satisfy Jacobi's identity.
 //!
 //! ```
 //! # use pc_mech::{Graph, System};
@@ -143,8 +144,8 @@
 //!
 //! d/dt ∂θ/∂ẋ_i = ∂(θ+U)/∂x_i + α_ri ∂(θ+U)/∂x_r + (c_ji^r ẋ_j + c_0i^r)(∂T/∂ẋ_r)_0 + Q_i + α_ri Q_r (35)
 //!
-//! of Voronets; they are Chaplygin's if nothing depends on the x_r, so that those of x_i form a system by
-//! themselves. [`Voronets`] takes a system in velocities, with multipliers.
+//! of Voronets; they are Chaplygin's equations if nothing depends on the x_r, so that the equations of the
+//! x_i form a system by themselves. [`Voronets`] takes a system in velocities with multipliers.
 //!
 //! ```
 //! use pc_mech::{Constraint, Graph, System};
@@ -171,12 +172,12 @@
 //!
 //! All forms above are singular where their choice of velocities is singular. The equations with
 //! [`Multipliers`](pc_mech::Multipliers), M η̇ = r + Cᵀ λ, are singular only where the constraints are singular,
-//! also for nonholonomic ones, and observe the λ: use them for long motions.
+//! even for nonholonomic constraints, and they give the λ: use them for long motions.
 //!
 //! # Around it
 //!
-//! Below: [`pc_mech`], the systems that constraints bind. Above: [pc-model](../pc_model/index.html), which classifies the constraints of
-//! a text, and [pc-analysis](../pc_analysis/index.html), invariant measures and Chaplygin's multiplier.
+//! Below: [`pc_mech`], the systems on which constraints act. Above: [pc-model](../pc_model/index.html), which classifies the constraints
+//! of a text model, and [pc-analysis](../pc_analysis/index.html), which finds invariant measures and Chaplygin's multiplier.
 
 mod classification;
 mod error;

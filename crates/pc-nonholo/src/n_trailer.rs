@@ -10,17 +10,17 @@ use crate::reduction::constrained::Constrained;
 pub struct Wagon<'g> {
     /// Mass.
     pub mass: Expr<'g>,
-    /// Moment of inertia about the vertical through the mass centre.
+    /// The moment of inertia about the vertical through the mass centre.
     pub inertia: Expr<'g>,
-    /// The distance of the mass centre ahead of the axle.
+    /// The distance by which the mass centre is ahead of the axle.
     pub ahead: Expr<'g>,
 }
 
-/// A car with n trailers, each hitched to the middle of the axle before it [Laumond 1993].
+/// A car with n trailers, each hitched to the midpoint of the axle in front of it [Laumond 1993].
 ///
-/// The coordinates are the middle (x, y) of the car's axle and the headings θ0..θn; the quasi-velocities the
-/// car's speed v, its turning ω, and the sideways velocities u0..un of the axles, which the wheels forbid.
-/// With v_i the speed of axle i ahead and ℓ_i its distance from the one before,
+/// The coordinates are the midpoint (x, y) of the car's axle and the headings θ0..θn; the quasi-velocities
+/// are the car's speed v, its turning rate ω, and the sideways velocities u0..un of the axles, which the
+/// wheels prevent. If v_i is the forward speed of axle i and ℓ_i its distance from the preceding one,
 ///
 ///   v_i = v_{i−1} cos δ − u_{i−1} sin δ,   ℓ_i θ̇_i = v_{i−1} sin δ + u_{i−1} cos δ − u_i,   δ = θ_{i−1} − θ_i.
 ///
@@ -42,7 +42,7 @@ pub struct Wagon<'g> {
 pub struct NTrailer<'g> {
     graph: &'g Graph,
     car: Wagon<'g>,
-    /// ℓ_i and the body.
+    /// The distance ℓ_i and the body of each trailer.
     trailers: Vec<(Expr<'g>, Wagon<'g>)>,
 }
 
@@ -60,7 +60,7 @@ impl<'g> NTrailer<'g> {
         NTrailer { graph, car, trailers: Vec::new() }
     }
 
-    /// The train with one more trailer at its end, whose axle is at the distance `length` from the last.
+    /// The train with one more trailer at its end, whose axle is at the distance `length` from the last axle.
     #[must_use]
     pub fn trailer(mut self, length: Expr<'g>, wagon: Wagon<'g>) -> Self {
         self.trailers.push((length, wagon));
@@ -96,15 +96,15 @@ impl<'g> NTrailer<'g> {
             })
     }
 
-    /// The motion without forces.
+    /// The equations of motion without forces.
     ///
     /// # Errors
-    /// [`NonholoError::Mech`], such as for a length or all masses of zero.
+    /// [`NonholoError::Mech`], for example if a length or all masses are zero.
     pub fn constrained(&self) -> Result<Constrained<'g>, NonholoError> {
         Constrained::new(&self.builder().build()?, &self.slips())
     }
 
-    /// The motion of each axle, from the car to the last, with x = (x, y, θ0..θn) and η = (v, ω, u0..un).
+    /// The motion of each axle, from the car's to the last, for x = (x, y, θ0..θn) and η = (v, ω, u0..un).
     fn axles(&self, x: &[Expr<'g>], eta: &[Expr<'g>]) -> Vec<Axle<'g>> {
         let mut axles = vec![Axle { ahead: eta[0], sideways: eta[2], turning: eta[1] }];
         for (i, &(length, _)) in self.trailers.iter().enumerate() {

@@ -1,8 +1,8 @@
 //! Equations in independent velocities.
 //!
-//! A system with constraints gives its equations in independent velocities, and the reactions. `adapted` turns
-//! constraints into vanishing quasi-velocities, `constrained` puts them in after differentiation (30), (32),
-//! `voronets` solves them for velocities (35).
+//! From a system with constraints to its equations in independent velocities and the reactions. `adapted`
+//! turns constraints into vanishing quasi-velocities, `constrained` substitutes them after differentiation
+//! (30), (32), and `voronets` solves them for velocities (35).
 
 pub(crate) mod adapted;
 pub(crate) mod constrained;

@@ -1,17 +1,17 @@
-//! The kinds of errors, by what can be done about them.
+//! The kinds of errors, according to what can be done about them.
 
 /// The kind of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Category {
-    /// Two motions that were compared are not the same.
+    /// Two motions that were compared differ.
     Different,
-    /// The request is wrong, whatever the model.
+    /// What was requested is wrong, whatever the model.
     Request,
     /// The text of the model is wrong, or asks for something that cannot be done yet.
     Text,
-    /// The request is not defined for this model, or exceeds its limits.
+    /// What was requested is not defined for this model, or exceeds its limits.
     Undefined,
-    /// A numerical method did not converge or did not reach its end.
+    /// A numerical method did not converge or did not reach the end.
     Failed,
     /// A result could not be written.
     Unwritten,

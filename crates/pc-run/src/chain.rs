@@ -1,8 +1,9 @@
-//! An error in one line.
+//! An error on one line.
 
 use std::error::Error;
 
-/// An error with its causes, each after its effect; some messages already end with that of their cause.
+/// The message of an error, followed by those of its causes in turn; the message of a cause is left out if
+/// the text already ends with it.
 pub fn chain(error: &dyn Error) -> String {
     let mut text = error.to_string();
     let mut source = error.source();

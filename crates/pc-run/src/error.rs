@@ -18,13 +18,13 @@ use crate::sweep::error::SweepError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RunError {
-    /// Sensitivities to something that is not a parameter.
+    /// Sensitivities were requested with respect to something that is not a parameter.
     #[error("--sensitivities: {0}")]
     Sensitivities(UnknownParameter),
     /// A tolerance for something that is not a component of the state.
     #[error("--atol: {0}")]
     Tolerance(#[source] UnknownStart),
-    /// Neither the options nor the model give an end time.
+    /// Neither the options nor the model gives an end time.
     #[error(
         "{model}: no end time: give `--t-end T`, or `t_end = T` in the section [simulation] of the model"
     )]
@@ -32,13 +32,13 @@ pub enum RunError {
         /// Name of the model file.
         model: String,
     },
-    /// An end time equal to the start time.
+    /// The end time is equal to the start time.
     #[error("the end time {t} is the start time: nothing to integrate")]
     EndIsStart {
         /// The start and end time.
         t: f64,
     },
-    /// More rows than the memory limit allows.
+    /// There are more rows than the memory limit allows.
     #[error(
         "{rows} rows of {numbers} numbers would take {} MiB, more than the limit of {} MiB; ask for fewer, give \
          --limit-memory {}M, or for a single motion only -o FILE.csv, whose rows are written as they are computed",
@@ -49,33 +49,33 @@ pub enum RunError {
     Rows {
         /// The number of rows requested.
         rows: u64,
-        /// Numbers in memory for each row.
+        /// The number of numbers held in memory for each row.
         numbers: u64,
-        /// Memory that they would take.
+        /// The memory that the rows would take.
         bytes: u64,
-        /// Memory that they may take.
+        /// The memory that they may take.
         limit: u64,
     },
-    /// Something wrong with the model.
+    /// Something is wrong with the model.
     #[error(transparent)]
     Model(#[from] ModelError),
     /// The equations disagree with a second derivation: one of the two is wrong, because of a
     /// defect of this program.
     #[error("{0}; no result is returned, because one of them is wrong through a defect of this program")]
     Verify(Box<VerifyError>),
-    /// Something wrong with a file.
+    /// Something is wrong with a file.
     #[error(transparent)]
     File(#[from] FileError),
-    /// Something wrong with checkpoints.
+    /// Something is wrong with checkpoints.
     #[error(transparent)]
     Checkpoints(#[from] CheckpointFileError),
-    /// Something wrong with a sweep.
+    /// Something is wrong with a sweep.
     #[error(transparent)]
     Sweep(#[from] SweepError),
-    /// Something wrong with a linearization or with equilibria.
+    /// Something is wrong with a linearization or with equilibria.
     #[error(transparent)]
     Linear(#[from] LinearError),
-    /// Motions that differ, or cannot be compared.
+    /// Motions differ, or cannot be compared.
     #[error(transparent)]
     Compare(#[from] CompareError),
     /// The integration could not continue.
@@ -86,12 +86,12 @@ pub enum RunError {
         cause: Box<SolveError>,
         /// Names of the components of the state.
         names: Vec<String>,
-        /// Whether forces jump where the state changes, as dry friction does.
+        /// Whether forces are discontinuous functions of the state, as dry friction is.
         jumps: bool,
-        /// The velocity that has lost its inertia, and what is left of it.
+        /// The velocity that has lost its inertia, and the fraction of it that is left.
         lost_inertia: Option<(String, f64)>,
     },
-    /// An integral that is proved to be kept has changed.
+    /// An integral has changed although it is proved to be conserved.
     #[error(
         "the motion is wrong: {} is proved to be kept at {}, and drifts by {}, more than a thousandth of its scale {}; \
          the rows are written as they were computed",
@@ -101,15 +101,15 @@ pub enum RunError {
     /// The time limit ended the integration.
     #[error("ended at t = {}: {limit}", short(*t, 17))]
     Ended {
-        /// How far the integration came.
+        /// The time that the integration reached.
         t: f64,
         /// The limit.
         limit: Spent,
     },
-    /// The observer ended the integration, as by Ctrl-C.
+    /// The observer ended the integration, for example by Ctrl-C.
     #[error("interrupted at t = {}", short(*t, 17))]
     Interrupted {
-        /// How far the integration came.
+        /// The time that the integration reached.
         t: f64,
     },
 }
@@ -143,7 +143,7 @@ impl RunError {
         }
     }
 
-    /// What may help, where that is known.
+    /// What may help, if anything is known.
     pub fn help(&self) -> Vec<String> {
         let mut help = Vec::new();
         if let RunError::Lost(_) = self {

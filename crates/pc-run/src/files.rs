@@ -1,8 +1,8 @@
-//! Files of results, written whole or not at all.
+//! Files of results, which are written completely or not at all.
 //!
-//! A `target` is examined before anything is computed; `atomic` writes there, by a `partial` file that replaces the old one
-//! whole. `rescue` saves a result that cannot be written to its target, and `kept` says where it is. A `stream` takes rows
-//! as they are computed; `error` lists the errors.
+//! A `target` is examined before anything is computed; `atomic` writes there, using a `partial` file that replaces the old
+//! one as a whole. `rescue` saves a result that cannot be written to its place, and `kept` says where it was saved. A
+//! `stream` takes rows as they are computed; `error` lists the errors.
 
 pub mod atomic;
 pub mod error;

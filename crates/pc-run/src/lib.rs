@@ -1,13 +1,13 @@
-//! A run of a model: the options become a plan, the plan a motion, the motion a table.
+//! Runs of models: the options become a plan, the plan a motion, and the motion a table.
 //!
 //! ```text
 //! Wishes ─ Model ─► Plan ─► Run ─► table, summary, record
 //! Variation ─► Design ─► Sweep ─► Journal ─► table, picture
 //! StateChoice ─► Linearized, Locus, Found     two Runs ─► Compared
 //! ```
-//! The program `pc` and the Python package are front ends of this crate: they give the options, watch as
+//! The program `pc` and the Python package are front ends of this crate: they supply the options, watch as an
 //! [`Observer`](observer::Observer), and show the results. Whatever the front end, the same options give the same numbers,
-//! compared with the same second derivation.
+//! and these are compared with the same second derivation.
 //!
 //! ```
 //! use pc_model::{Builtin, Model};
@@ -29,8 +29,9 @@
 //!
 //! # Around it
 //!
-//! Below: [`pc_model`], the models; [`pc_verify`], the second derivation; [`pc_solve`], the motions; [`pc_analysis`],
-//! linearizations and equilibria; [`pc_report`], pictures and pages. Above: [pc-cli](../pc_cli/index.html), the program `pc`.
+//! Below: [`pc_model`] for the models, [`pc_verify`] for the second derivation, [`pc_solve`] for the motions, [`pc_analysis`]
+//! for linearizations and equilibria, and [`pc_report`] for pictures and pages. Above: [pc-cli](../pc_cli/index.html), the
+//! program `pc`.
 
 mod category;
 mod chain;

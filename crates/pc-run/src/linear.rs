@@ -1,9 +1,9 @@
 //! Linearizations and equilibria of a model, for people and for programs.
 //!
-//! A model becomes a linearizer with its start (`linearizable`), with which `pc_analysis` computes at the requested `state`, also with other values
-//! (`near`). One linearization is `linearized`, printed as `text` or `json`; `compared` has its matrices compared with a second derivation.
-//! `locus` is the table of eigenvalues over a parameter, `found` the list of equilibria. `arrays` are their numbers, and `output` writes
-//! files; `error` lists the errors.
+//! A model becomes a linearizer with a start (`linearizable`), which `pc_analysis` uses at the requested `state`, and also with other values
+//! (`near`). A single linearization is `linearized`, which is printed as `text` or `json`; `compared` compares its matrices with a second
+//! derivation. `locus` is the table of eigenvalues over a parameter, and `found` the list of equilibria. `arrays` contains the numbers of
+//! all these, and `output` writes them to files; `error` lists the errors.
 
 mod arrays;
 mod compared;

@@ -1,10 +1,11 @@
 //! The computation of a motion, from a plan to a finished run.
 //!
-//! `integrate` makes a [`Run`](run::Run) of a model and its plan, with equations that may have been `derived` before. `checkpoints`, with their `identity` and `checkpoint_error`,
-//! continue an interrupted run; `sensitivities` are derivatives with respect to parameters, `estimate` the global
-//! errors; `streamed` is a motion whose rows are written at once. `verification` compares it with a second derivation, `remarks` are notes on the equations. `lost_integral`
-//! finds, at some `step_states`, an integral that was proved to be kept and is `lost`; `lost_inertia` finds why a mass matrix became singular. `fine` is the motion between its
-//! rows, for pictures; `table` and `run` are the results, which `output` writes, `summary` puts into words and `recording` prepares for pages and pictures.
+//! `integrate` makes a [`Run`](run::Run) from a model and its plan, with equations that may have been `derived` before. `checkpoints`, with
+//! their `identity` and `checkpoint_error`, continue an interrupted run; `sensitivities` computes derivatives with respect to parameters,
+//! and `estimate` the global errors; `streamed` is a motion whose rows are written as they are computed. `verification` compares a motion
+//! with a second derivation, and `remarks` are notes on the equations. `lost_integral` finds, from some `step_states`, an integral that is
+//! proved to be conserved but is `lost`; `lost_inertia` finds why a mass matrix became singular. `fine` is the motion between its rows, for
+//! pictures; `table` and `run` are the results, which `output` writes, `summary` describes and `recording` prepares for pages and pictures.
 
 pub mod checkpoint_error;
 pub mod checkpoints;

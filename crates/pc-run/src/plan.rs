@@ -1,7 +1,7 @@
 //! What to run: [`Wishes`] and a model become a [`Plan`].
 //!
-//! `wishes` are the options of the caller, `plan` is all that a run needs, `tolerances` those of
-//! the components of the state, and `memory` whether the rows fit.
+//! `wishes` are the options of the caller, `plan` is everything that a run needs, `tolerances` are the
+//! tolerances of the components of the state, and `memory` finds whether there is enough memory for the rows.
 
 pub(crate) mod memory;
 pub(crate) mod plan;

@@ -1,7 +1,7 @@
-//! Tables: each format has one writer for motions, sweeps and linearizations.
+//! Tables: for each format, one writer serves motions, sweeps and linearizations.
 //!
-//! `rows` are a table as formats see it, `array` is a matrix with a name; `csv`, `json`, `npz`, `parquet` and `mat` are the formats,
-//! chosen by the name of a `file`.
+//! `rows` is a table as the writers see it, and `array` a matrix with a name; `csv`, `json`, `npz`, `parquet` and `mat` are the
+//! formats, which are chosen by the name of a `file`.
 
 pub mod array;
 pub mod csv;

@@ -18,17 +18,17 @@ use crate::names::stage::Stage;
 
 static DERIVATIONS: AtomicUsize = AtomicUsize::new(0);
 
-/// The number of times that models were [assembled](Model::assemble) by this process: what it spends on derivations,
-/// whatever the machine.
+/// The number of times this process has [assembled](Model::assemble) a model: a measure of its work on derivations
+/// that is the same on every machine.
 pub fn derivations() -> usize {
     DERIVATIONS.load(Ordering::Relaxed)
 }
 
 impl Model {
-    /// The mechanical system, its expressions in `graph`, and its start state.
+    /// The mechanical system of the model, with its expressions in `graph`, and its start state.
     ///
     /// # Errors
-    /// [`ModelError`] at the place in the file that causes it.
+    /// [`ModelError`] at the place in the file that causes the error.
     pub fn assemble<'g>(&self, graph: &'g Graph) -> Result<Assembly<'g>, ModelError> {
         DERIVATIONS.fetch_add(1, Ordering::Relaxed);
         self.parameter_values().check(self.document())?;
@@ -40,11 +40,11 @@ impl Model {
         Ok(assembly)
     }
 
-    /// Does some work on the mechanical system, whose expressions last as long as the work.
+    /// Runs `work` on the mechanical system, whose expressions live only as long as it runs.
     ///
     /// # Errors
-    /// As [`assemble`](Model::assemble), those of the work, and [`ErrorKind::Spent`](crate::ErrorKind::Spent) if it reached the
-    /// [limits](Model::limit).
+    /// The errors of [`assemble`](Model::assemble), those of `work`, and [`ErrorKind::Spent`](crate::ErrorKind::Spent) if it
+    /// reaches the [limits](Model::limit).
     pub fn derived<T, E: From<ModelError>>(
         &self,
         work: impl FnOnce(&Assembly<'_>) -> Result<T, E>,
@@ -57,7 +57,8 @@ impl Model {
     }
 }
 
-/// What a mechanical system begins with: its frame, the constraints as written, and where it starts.
+/// The first parts of a mechanical system to be assembled: its frame, the constraints as written, and its
+/// start.
 pub(super) struct Begun<'g> {
     pub(super) t_start: f64,
     pub(super) frame: Frame<'g>,
@@ -65,11 +66,11 @@ pub(super) struct Begun<'g> {
     /// All quasi-velocities, the declared ones first.
     pub(super) eta: Vec<Expr<'g>>,
     declared: usize,
-    /// The number of quasi-velocities, the first ones, that determine the others.
+    /// The number of quasi-velocities, counted from the first, that determine the others.
     pub(super) prescribed: usize,
     /// The velocities x' with their values b η + b_0.
     pub(super) x_dot: Vec<(Expr<'g>, Expr<'g>)>,
-    /// Coordinates, quasi-velocities and first-order states as they are written.
+    /// The start values of coordinates, quasi-velocities and first-order states, as written.
     pub(super) start: Vec<f64>,
 }
 
@@ -91,8 +92,8 @@ impl<'g> Assembler<'g, '_> {
         values
     }
 
-    /// Checks that the quasi-velocities determine ẋ at the start as elsewhere: where q = 0 the rate of a
-    /// quaternion is zero for any ω.
+    /// Checks that the frame has the same rank at the start as elsewhere: where q = 0, for example, the rate
+    /// of a quaternion is zero for any ω.
     fn check_frame_at_start(&self, frame: &Frame<'g>, values: &[(Expr<'g>, f64)]) -> Result<(), ModelError> {
         let start = Neighbourhood { centre: values.to_vec() };
         let (rank, everywhere) = (start.rank_at_centre(self.graph, frame.b()), frame.rank());
@@ -111,7 +112,7 @@ impl<'g> Assembler<'g, '_> {
         }
     }
 
-    /// The frame, the constraints as written, and the start before it is moved onto these.
+    /// The frame, the constraints as written, and the start before it is moved onto them.
     pub(super) fn begin(&mut self) -> Result<Begun<'g>, ModelError> {
         let document = self.model.document();
         let parameters = self.parameters();
@@ -258,7 +259,7 @@ impl<'g> Assembler<'g, '_> {
         }
     }
 
-    /// T − V of `[lagrangian]`, the energy without that of the bodies.
+    /// T − V as given by `[lagrangian]`, without the bodies.
     fn lagrangian(&mut self, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Result<Expr<'g>, ModelError> {
         let Some(energy) = &self.model.document().lagrangian else { return Ok(Expr::ZERO) };
         let mut lagrangian = Expr::ZERO;
@@ -278,7 +279,7 @@ impl<'g> Assembler<'g, '_> {
         }
     }
 
-    /// ż of the first-order states.
+    /// The rates ż of the first-order states.
     fn state_rates(&mut self, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Result<Vec<Expr<'g>>, ModelError> {
         let states = self.model.document().states.iter();
         let rates: Result<Vec<Expr<'g>>, ModelError> =
@@ -334,11 +335,12 @@ impl<'g> Assembler<'g, '_> {
         Ok(observed)
     }
 
-    /// Substitutes ẋ = b η + b_0, and for the accelerations x'' its derivative along the motion,
+    /// Substitutes ẋ = b η + b_0 for the velocities and, for the accelerations x'', the derivative of this
+    /// along the motion,
     ///
     ///   ẍ = b η̇ + (db/dt) η + db_0/dt,
     ///
-    /// where `eta` are all quasi-velocities of the system, with those that complete the declared ones.
+    /// where `eta` are all quasi-velocities of the system, including those that complete the declared ones.
     fn with_velocities(&self, value: Expr<'g>, eta: &[Expr<'g>], x_dot: &[(Expr<'g>, Expr<'g>)]) -> Expr<'g> {
         let graph = self.graph;
         // Of the velocities that remain, x' is itself a quasi-velocity.
@@ -358,7 +360,7 @@ impl<'g> Assembler<'g, '_> {
         graph.substitute(&[value], &replacements)[0]
     }
 
-    /// Finds the first part of the model, as written, that is not a number at the start.
+    /// Finds the first part of the model, as written, whose value at the start is not a finite number.
     fn check_finite(
         &self,
         values: &[(Expr<'g>, f64)],

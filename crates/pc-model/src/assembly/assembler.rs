@@ -22,12 +22,12 @@ impl<'g> Assembler<'g, '_> {
         self.model.document().quasi_velocities.is_empty()
     }
 
-    /// Whether joints give all quasi-velocities except those that are velocities x'.
+    /// Whether all quasi-velocities, apart from velocities x', belong to joints.
     pub(super) fn is_moved_by_joints(&self) -> bool {
         !self.model.document().tree.is_empty() && self.first_own_quasi_velocity().is_none()
     }
 
-    /// The first quasi-velocity that is neither that of a joint nor a velocity x'.
+    /// The first quasi-velocity that neither belongs to a joint nor is a velocity x'.
     pub(super) fn first_own_quasi_velocity(&self) -> Option<&QuasiVelocity> {
         let document = self.model.document();
         let of_joints: usize = document.tree.iter().map(|body| body.joint.quasi_velocities.len()).sum();

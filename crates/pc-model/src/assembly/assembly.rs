@@ -13,33 +13,35 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::document::Document;
 
-/// The system of a model, with the state its motion starts from.
+/// The system of a model, with the state from which its motion starts.
 pub struct Assembly<'g> {
-    /// The system, without its constraints. Its quasi-velocities are those declared and those that constraints define.
+    /// The system, without its constraints. Its quasi-velocities are the declared ones and those defined by
+    /// constraints.
     pub system: System<'g>,
     /// Its constraints.
     pub constraints: ConstraintTreatment<'g>,
     /// Start time.
     pub t_start: f64,
-    /// Start state: coordinates, quasi-velocities, first-order states.
+    /// The start state: coordinates, quasi-velocities, first-order states.
     pub start: Vec<f64>,
-    /// The start state as written, where it was moved onto the constraints.
+    /// The start state as written, if it was moved onto the constraints.
     pub written_start: Option<Vec<f64>>,
-    /// Number of declared quasi-velocities, which come first; number of velocities if none is declared.
+    /// The number of declared quasi-velocities, which come first, or the number of velocities if none is
+    /// declared.
     pub declared: usize,
-    /// The events, in the order in which simultaneous ones are handled.
+    /// The events, in the order in which simultaneous events are handled.
     pub events: Vec<Event<'g>>,
-    /// The definitions of the text with ẋ = b η + b_0 substituted, unless they have different meanings in
-    /// different places.
+    /// The definitions of the text, with ẋ = b η + b_0 substituted, except those that have different meanings
+    /// in different places.
     pub definitions: Vec<(String, Expr<'g>)>,
     /// The quasi-velocities given in addition to those of the text, as linear forms in those of the system.
     pub given: Vec<(Expr<'g>, Expr<'g>)>,
     /// The solution of Hamilton–Jacobi's equation in the text, if there is one.
     pub action: Option<Action<'g>>,
-    /// The bodies whose masses change with time or first-order states: D_t (m v) = F, so that the mass they
-    /// lose or take up is at rest.
+    /// The bodies whose masses change with time or first-order states: they obey D_t (m v) = F, so that the
+    /// mass they lose or take up is at rest.
     pub changing_masses: Vec<String>,
-    /// The text, in which errors are located.
+    /// The text of the model, in which errors are located.
     pub(crate) document: Arc<Document>,
 }
 
@@ -51,15 +53,15 @@ impl<'g> Assembly<'g> {
         state.zip(self.start.iter().copied()).chain([(frame.time(), self.t_start)]).collect()
     }
 
-    /// The result of a derivation from this system, with an error located at the entry of the file that causes it.
+    /// The result of a derivation from this system; an error is located at the entry of the file that causes it.
     ///
     /// # Errors
-    /// [`ModelError`] for the error of the derivation.
+    /// [`ModelError`], made from the error of the derivation.
     pub fn placed<T>(&self, derived: Result<T, impl Into<NonholoError>>) -> Result<T, ModelError> {
         derived.map_err(|error| self.document.constraint_error(error.into()))
     }
 
-    /// Checks that what was derived from this system so far is complete.
+    /// Checks that everything derived from this system so far is complete.
     ///
     /// # Errors
     /// [`ErrorKind::Spent`](crate::ErrorKind::Spent) if the [limits](crate::Model::limit) were reached.
@@ -67,11 +69,11 @@ impl<'g> Assembly<'g> {
         self.document.stage(self.system.graph(), "what was asked for", || Ok(()))
     }
 
-    /// Does some work on this system. If the [limits](crate::Model::limit) are reached, before or during the work,
-    /// the result is an error that names this stage, whatever the work returns.
+    /// Runs `work` on this system. If the [limits](crate::Model::limit) are reached before or during it, the
+    /// result is an error that names this stage, whatever `work` returns.
     ///
     /// # Errors
-    /// [`ErrorKind::Spent`](crate::ErrorKind::Spent), and the errors of the work.
+    /// [`ErrorKind::Spent`](crate::ErrorKind::Spent), and the errors of `work`.
     pub fn stage<T, E: From<ModelError>>(
         &self,
         name: &'static str,
@@ -82,7 +84,7 @@ impl<'g> Assembly<'g> {
             .unwrap_or_else(|error| Err(error.into()))
     }
 
-    /// The error that something could not be derived from this system, located at the energy if no other
+    /// The error for something that could not be derived from this system, located at the energy if no other
     /// entry causes it.
     pub fn not_derived(&self, message: String) -> ModelError {
         self.document.error(&self.document.energy_place(), MeaningError::Derivation { message })
@@ -97,7 +99,7 @@ impl<'g> Assembly<'g> {
         self.document.stage(self.system.graph(), "the equations of motion", equations)
     }
 
-    /// The conditions f(t, x) = 0 that multipliers hold, by the names of their constraints.
+    /// The conditions f(t, x) = 0 enforced by multipliers, each with the name of its constraint.
     pub fn held_positions(&self) -> Vec<(String, Expr<'g>)> {
         let ConstraintFormulation::Multipliers(held) = self.constraints.formulation() else {
             return Vec::new();
@@ -114,8 +116,8 @@ impl<'g> Assembly<'g> {
         self.placed(self.constraints.free_system(&self.system, &self.at_start()))
     }
 
-    /// Each quasi-velocity of the system as a function of time, coordinates and the `free` ones, those of a
-    /// [free system](Assembly::free_system) or all.
+    /// Each quasi-velocity of the system as a function of time, coordinates and the `free` quasi-velocities:
+    /// those of a [free system](Assembly::free_system), or all.
     ///
     /// # Errors
     /// [`ModelError`] if these do not determine the others.
@@ -123,10 +125,10 @@ impl<'g> Assembly<'g> {
         self.placed(self.constraints.quasi_velocities_of(self.system.quasi_velocities(), free))
     }
 
-    /// Whether the motion is proved to keep its energy (that of all velocities if multipliers hold
-    /// constraints, else that of the free ones): dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s vanishes where
-    /// the constraints hold, and these are homogeneous in the velocities, so that their reactions do no
-    /// work.
+    /// Whether it is proved that the motion conserves its energy (that of all velocities if multipliers
+    /// enforce constraints, otherwise that of the free ones): dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s
+    /// vanishes where the constraints hold, and these are homogeneous in the velocities, so that their
+    /// reactions do no work.
     pub fn keeps_energy(&self) -> bool {
         let (system, graph) = (&self.system, self.system.graph());
         match self.constraints.formulation() {
@@ -147,7 +149,8 @@ impl<'g> Assembly<'g> {
         self.start_of(self.system.quasi_velocities())
     }
 
-    /// The start state of a motion with these components: coordinates and some of the quasi-velocities.
+    /// The start state of a motion whose state has these components: coordinates and some of the
+    /// quasi-velocities.
     pub fn start_of(&self, components: &[Expr<'g>]) -> Vec<f64> {
         let at = self.at_start();
         let known = SymbolPlaces::of(&at.iter().map(|&(symbol, _)| symbol).collect::<Vec<_>>());

@@ -1,4 +1,4 @@
-//! The bodies of a model: their expressions, resolved and checked in place.
+//! The bodies of a model: their expressions are resolved, and errors are located in the file.
 
 use pc_algebra::affine;
 use pc_mech::{Expr, Inertia, Matrix, Particle, RigidBody};
@@ -9,16 +9,16 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::document::{self, Expression, Orientation};
 use crate::names::stage::Stage;
 
-/// A body for the mechanics.
+/// A body in the form that the mechanics takes.
 pub(super) enum SystemBody<'g> {
     /// A body without orientation.
     Particle(Particle<'g>),
-    /// A body that turns.
+    /// A body with an orientation.
     Rigid(Box<RigidBody<'g>>),
 }
 
 impl<'g> Assembler<'g, '_> {
-    /// The entries of `[bodies]`; `x_dot` are the symbols x' with b η + b_0.
+    /// The entries of `[bodies]`; `x_dot` pairs each symbol x' with its value b η + b_0.
     pub(super) fn bodies(
         &mut self,
         eta: &[Expr<'g>],
@@ -88,7 +88,7 @@ impl<'g> Assembler<'g, '_> {
         Ok(SystemBody::Rigid(Box::new(rigid)))
     }
 
-    /// Functions of the names allowed at that stage.
+    /// The expressions resolved as functions of the names allowed at this stage.
     pub(super) fn resolved<const N: usize>(
         &mut self,
         list: &[Expression; N],
@@ -101,7 +101,7 @@ impl<'g> Assembler<'g, '_> {
         Ok(values)
     }
 
-    /// Functions of the motion, with ẋ = b η + b_0 substituted.
+    /// The expressions resolved as functions of the motion, with ẋ = b η + b_0 substituted.
     pub(super) fn all_dynamic<const N: usize>(
         &mut self,
         list: &[Expression; N],

@@ -11,21 +11,21 @@ use crate::diagnostics::meaning::MeaningError;
 /// The reactions on bodies, each component with its name.
 #[derive(Default)]
 struct Resultants<'g> {
-    /// The components of all vectors that are not identically zero.
+    /// The components, apart from those of vectors that are identically zero.
     columns: Vec<(String, Expr<'g>)>,
     /// The symbols of all components with their values.
     known: Vec<(Expr<'g>, Expr<'g>)>,
-    /// The reactions that virtual work leaves undetermined, in words.
+    /// Descriptions of the reactions that virtual work leaves undetermined.
     undetermined: Vec<String>,
 }
 
 impl<'g> Assembler<'g, '_> {
     /// The system with the forces and torques of the reactions on bodies substituted in its integrals and
-    /// outputs, and added as outputs if all reactions are to be observed; and the undetermined ones, in
-    /// words.
+    /// outputs, and added to the outputs if all reactions are to be observed; then descriptions of the
+    /// undetermined reactions.
     ///
     /// # Errors
-    /// [`MeaningError::ForceNotDetermined`] if the model names an undetermined one.
+    /// [`MeaningError::ForceNotDetermined`] if the model names an undetermined reaction.
     pub(crate) fn with_resultants(
         &self,
         system: System<'g>,

@@ -24,12 +24,12 @@ pub struct ConstraintTreatment<'g> {
     combinations: usize,
     redundant: Vec<Redundant>,
     undetermined: Vec<String>,
-    /// The velocities chosen as independent; none if the choice is free.
+    /// The velocities requested as independent; empty if the choice is left open.
     independent: Vec<Expr<'g>>,
     derived: Derived<'g>,
 }
 
-/// What was derived under the constraints.
+/// The results of derivations under the constraints.
 #[derive(Clone, Debug, Default)]
 struct Derived<'g> {
     /// The equations with the chosen quasi-velocities as the independent ones.
@@ -42,18 +42,18 @@ struct Derived<'g> {
 /// The formulation of the constraints.
 #[derive(Clone, Debug)]
 pub enum ConstraintFormulation<'g> {
-    /// There are none.
+    /// There are no constraints.
     Free,
-    /// Each makes a quasi-velocity of the system vanish: equations (30) of the others.
+    /// Each constraint makes a quasi-velocity of the system vanish: the others have equations (30).
     Vanishing(Box<Constrained<'g>>),
-    /// Any other constraints: multipliers.
+    /// The constraints are of any other kind, and have multipliers.
     Multipliers(Box<MultiplierFormulation<'g>>),
 }
 
-/// Constraints kept by multipliers.
+/// Constraints enforced by multipliers.
 #[derive(Clone, Debug)]
 pub struct MultiplierFormulation<'g> {
-    /// The equations of all quasi-velocities.
+    /// The equations of motion in all quasi-velocities, with multipliers.
     pub multipliers: Multipliers<'g>,
     /// Whether all constraints are integrable.
     pub holonomic: bool,
@@ -64,7 +64,7 @@ impl<'g> ConstraintTreatment<'g> {
         ConstraintTreatment::nothing(Vec::new())
     }
 
-    /// Constraints without effect.
+    /// No constraint that binds; `redundant` are those that were dropped.
     pub(crate) fn nothing(redundant: Vec<Redundant>) -> ConstraintTreatment<'g> {
         ConstraintTreatment {
             formulation: ConstraintFormulation::Free,
@@ -78,7 +78,7 @@ impl<'g> ConstraintTreatment<'g> {
         }
     }
 
-    /// Constraints that bind, in some formulation.
+    /// Constraints that bind, in this formulation.
     pub(crate) fn new(
         formulation: ConstraintFormulation<'g>,
         multipliers: Multipliers<'g>,
@@ -112,12 +112,13 @@ impl<'g> ConstraintTreatment<'g> {
         ConstraintTreatment { independent, derived: Derived::default(), ..self }
     }
 
-    /// The velocities chosen as independent; none if the choice is free.
+    /// The velocities requested as independent; empty if the choice is left open.
     pub fn asked_for(&self) -> &[Expr<'g>] {
         &self.independent
     }
 
-    /// The multipliers in the integrated equations; none if independent velocities were chosen.
+    /// The equations with multipliers, if these are integrated; none if independent velocities were
+    /// requested.
     pub fn held(&self) -> Option<&Multipliers<'g>> {
         match &self.formulation {
             ConstraintFormulation::Multipliers(held) if self.independent.is_empty() => {
@@ -127,8 +128,9 @@ impl<'g> ConstraintTreatment<'g> {
         }
     }
 
-    /// The multipliers of a formulation with the requested independent quasi-velocities, or with those whose
-    /// equations are [shortest](Multipliers::shortest) among the choices that are regular at the values `at`.
+    /// The equations of a formulation with multipliers, with the requested independent quasi-velocities or,
+    /// among the choices that are regular at the values `at`, those whose equations are
+    /// [shortest](Multipliers::shortest).
     fn chosen(
         &self,
         held: &MultiplierFormulation<'g>,
@@ -147,8 +149,8 @@ impl<'g> ConstraintTreatment<'g> {
         })
     }
 
-    /// Checks that no choice is requested if constraints make quasi-velocities of the model vanish, or no
-    /// constraint binds.
+    /// Checks that the requested independent quasi-velocities, if any, are the `free` ones, since there is no
+    /// other choice where constraints make quasi-velocities of the model vanish or no constraint binds.
     fn check_no_choice(&self, free: &[Expr<'g>]) -> Result<(), NonholoError> {
         let is_other = |chosen: &[Expr<'g>]| {
             chosen.len() != free.len() || !chosen.iter().all(|chosen| free.contains(chosen))
@@ -188,7 +190,7 @@ impl<'g> ConstraintTreatment<'g> {
         self.combinations
     }
 
-    /// Those of these combinations that are found in closed form; `at` are values of time and state where the
+    /// The integrable combinations that are found in closed form; `at` are values of time and state where the
     /// constraints are regular.
     ///
     /// # Errors
@@ -202,7 +204,8 @@ impl<'g> ConstraintTreatment<'g> {
         IntegrableCombination::find(multipliers, &kinds, self.combinations, at)
     }
 
-    /// The f of the conditions f(t, x) = 0 that multipliers hold, if all constraints are integrable.
+    /// The functions f of the conditions f(t, x) = 0 enforced by multipliers, if all constraints are
+    /// integrable.
     pub fn positions(&self, system: &System<'g>) -> Option<Vec<Expr<'g>>> {
         let is_holonomic = |verdict: &ClassifiedConstraint| {
             matches!(verdict.kind, ConstraintKind::Position | ConstraintKind::Integrable)
@@ -220,15 +223,15 @@ impl<'g> ConstraintTreatment<'g> {
         &self.redundant
     }
 
-    /// The forces of reactions on bodies that are observed but not determined by virtual work, in words: `the force
-    /// on` and the name of the body.
+    /// Descriptions of the reaction forces on bodies that are observed but not determined by virtual work: `the
+    /// force on` and the name of the body.
     pub fn undetermined(&self) -> &[String] {
         &self.undetermined
     }
 
-    /// The system in a frame in which the constraints make quasi-velocities vanish: that of the model if it is such
-    /// a frame, else the one that is best at the values `at` of time and state. None if there are no constraints,
-    /// only integrable ones held by multipliers, or some that are not affine in the velocities.
+    /// The system in a frame in which the constraints make quasi-velocities vanish: the frame of the model if it is
+    /// such a frame, otherwise the one that is best at the values `at` of time and state. None if there are no
+    /// constraints, only integrable ones enforced by multipliers, or some that are not affine in the velocities.
     ///
     /// # Errors
     /// [`NonholoError`] if there is no such frame.
@@ -249,12 +252,13 @@ impl<'g> ConstraintTreatment<'g> {
     }
 
     /// The symbols λ of the reactions with their values in the frame of
-    /// [`constrained`](ConstraintTreatment::constrained), functions of time, coordinates and free quasi-velocities, or
-    /// of all where constraints are not affine in them; none if integrable constraints are held by multipliers.
-    /// They contain the symbols of the accelerations if that is shorter.
+    /// [`constrained`](ConstraintTreatment::constrained), as functions of time, coordinates and the free
+    /// quasi-velocities, or all quasi-velocities where constraints are not affine in them; empty if integrable
+    /// constraints are enforced by multipliers. The values contain the symbols of the accelerations if that makes them
+    /// shorter.
     ///
     /// # Errors
-    /// As there.
+    /// As for [`constrained`](ConstraintTreatment::constrained).
     pub fn reactions(&self, at: &[(Expr<'g>, f64)]) -> Result<Vec<(Expr<'g>, Expr<'g>)>, NonholoError> {
         if let Some(held) = self.nonlinear() {
             return Ok(held.reactions().iter().copied().zip(held.reactions_of_state()?).collect());
@@ -276,16 +280,16 @@ impl<'g> ConstraintTreatment<'g> {
         Ok(multipliers.reactions().iter().copied().zip(places.map(|a| values[a])).collect())
     }
 
-    /// The equations with multipliers, if a constraint is not affine in the velocities: there are no
-    /// independent ones then.
+    /// The equations with multipliers, if a constraint is not affine in the velocities: then there are no
+    /// independent velocities.
     pub fn nonlinear(&self) -> Option<&Multipliers<'g>> {
         self.multipliers.as_ref().filter(|multipliers| multipliers.is_nonlinear())
     }
 
-    /// The equations of motion in independent quasi-velocities: (9), (14) or (30). Under constraints held by
-    /// multipliers they use the requested independent quasi-velocities, or those whose equations are shortest among
-    /// those regular at `at`, and observables have the reactions substituted. If a constraint is not affine in the
-    /// velocities, they are the equations of all velocities, with the reactions substituted.
+    /// The equations of motion in independent quasi-velocities: (9), (14) or (30). Under constraints enforced by
+    /// multipliers, they use the requested independent quasi-velocities or, among the choices regular at `at`,
+    /// those whose equations are shortest, and the reactions are substituted in observables. If a constraint is not
+    /// affine in the velocities, they are the equations in all velocities, with the reactions substituted.
     ///
     /// # Errors
     /// [`NonholoError`] if they cannot be derived.

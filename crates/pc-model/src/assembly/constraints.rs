@@ -1,4 +1,4 @@
-//! The constraints of a model: classified, checked at the start, and given the cheapest treatment.
+//! The constraints of a model: they are classified, checked at the start, and treated in the cheapest way.
 
 use pc_mech::{Constraint, Expr, Multipliers, System};
 use pc_nonholo::{Constrained, ConstraintClassification, ConstraintKind, Redundant};
@@ -20,12 +20,12 @@ pub(super) struct Written<'g> {
     value: Expr<'g>,
     /// Whether it is declared nonlinear.
     nonlinear: bool,
-    /// The quasi-velocity that it defines, if it completes the declared ones.
+    /// The quasi-velocity that the constraint defines, if it completes the declared ones.
     defines: Option<Expr<'g>>,
 }
 
 impl<'g> Written<'g> {
-    /// Makes it define this quasi-velocity.
+    /// Makes the constraint define this quasi-velocity.
     pub(super) fn define(&mut self, quasi_velocity: Expr<'g>) {
         self.defines = Some(quasi_velocity);
     }
@@ -46,11 +46,11 @@ impl<'g> Written<'g> {
     }
 }
 
-/// The system with observed reactions, and its equations with multipliers.
+/// The system with its observed reactions, and its equations with multipliers.
 struct Reacting<'g> {
     system: System<'g>,
     multipliers: Multipliers<'g>,
-    /// The forces on bodies that virtual work leaves undetermined, in words.
+    /// Descriptions of the forces on bodies that virtual work leaves undetermined.
     undetermined: Vec<String>,
 }
 
@@ -65,7 +65,7 @@ impl<'g> Assembler<'g, '_> {
         Ok(written)
     }
 
-    /// The name of a constraint, extended if something else has it.
+    /// The name of a constraint, extended if it is already taken.
     pub(super) fn unused(&self, label: &str) -> String {
         let document = self.model.document();
         let parameters = document.parameters.iter().map(|p| &p.name.text);
@@ -79,8 +79,8 @@ impl<'g> Assembler<'g, '_> {
         name
     }
 
-    /// The treatment of the constraints, and the start on them; `at` are values of all symbols there, and the
-    /// first `prescribed` quasi-velocities determine the others.
+    /// The treatment of the constraints, and the start that satisfies them; `at` are values of all symbols
+    /// there, and the first `prescribed` quasi-velocities determine the others.
     pub(super) fn treatment(
         &self,
         system: &System<'g>,
@@ -103,7 +103,7 @@ impl<'g> Assembler<'g, '_> {
         }
     }
 
-    /// The constraints, in quasi-velocities.
+    /// The constraints, expressed in quasi-velocities.
     pub(super) fn in_quasi_velocities(
         &self,
         written: &[Written<'g>],
@@ -112,7 +112,8 @@ impl<'g> Assembler<'g, '_> {
         written.iter().map(|w| self.constraint(w, x_dot)).collect()
     }
 
-    /// The kinds of the constraints at the start, which is moved onto them if the model requests it.
+    /// The kinds of the constraints at the start, which is moved onto the constraints if the model requests
+    /// it.
     pub(super) fn on_constraints(
         &self,
         (system, constraints): (&System<'g>, &[Constraint<'g>]),
@@ -141,7 +142,7 @@ impl<'g> Assembler<'g, '_> {
         Ok((classification, classified))
     }
 
-    /// Moves the start to the constraints, if the model requests it, and checks that it satisfies them.
+    /// Moves the start onto the constraints, if the model requests it, and checks that it satisfies them.
     fn project_start(
         &self,
         trial: &Trial<'_, 'g>,
@@ -190,8 +191,8 @@ impl<'g> Assembler<'g, '_> {
         Ok(Some(Reacting { system, multipliers, undetermined }))
     }
 
-    /// The cheapest formulation: without the quasi-velocities that vanish, if every constraint just says
-    /// that one vanishes, otherwise with multipliers.
+    /// The cheapest formulation: without the vanishing quasi-velocities if each constraint only says that one
+    /// of them vanishes, otherwise with multipliers.
     fn choose(
         &self,
         Reacting { system, multipliers, undetermined }: Reacting<'g>,
@@ -230,7 +231,7 @@ impl<'g> Assembler<'g, '_> {
         }
     }
 
-    /// The constraint, in quasi-velocities.
+    /// The constraint, expressed in quasi-velocities.
     fn constraint(&self, written: &Written<'g>, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Constraint<'g> {
         let value = self.graph.substitute(&[written.value], x_dot)[0];
         let (text, value) = (self.text_of(written), written.defines.unwrap_or(value));
@@ -240,8 +241,8 @@ impl<'g> Assembler<'g, '_> {
         }
     }
 
-    /// Checks that constraints declared nonlinear are nonlinear: affine ones have more forms and Frobenius'
-    /// test.
+    /// Checks that constraints declared nonlinear are nonlinear: affine ones allow more forms of the
+    /// equations and Frobenius' test.
     fn check_nonlinear(&self, system: &System<'g>, constraints: &[Constraint<'g>]) -> Result<(), ModelError> {
         for constraint in constraints.iter().filter(|constraint| constraint.is_nonlinear()) {
             let what = match constraint.coefficients(system) {
@@ -297,7 +298,7 @@ impl<'g> Assembler<'g, '_> {
     }
 }
 
-/// Whether the text declares it as not affine in the velocities.
+/// Whether the text declares the constraint as not affine in the velocities.
 fn is_called_nonlinear(constraint: &document::Constraint) -> bool {
     constraint.kind.as_ref().is_some_and(|kind| kind.value == DeclaredKind::Nonlinear)
 }

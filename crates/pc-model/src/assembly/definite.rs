@@ -5,12 +5,12 @@ use pc_mech::Expr;
 
 use crate::assembly::assembly::Assembly;
 
-/// An entry this small relative to the largest of a matrix is rounding.
+/// An entry this small relative to the largest entry of its matrix is treated as rounding error.
 const ROUNDING: f64 = 1e-12;
 
 impl<'g> Assembly<'g> {
-    /// Whether δη·M δη < 0, M = ∂²L/∂η∂η, for some velocity that the constraints allow at the start: then a mass or a
-    /// moment of inertia has the wrong sign.
+    /// Whether δη·M δη < 0, where M = ∂²L/∂η∂η, for some velocity that the constraints allow at the start: if so, a
+    /// mass or a moment of inertia has the wrong sign.
     pub fn has_negative_energy(&self) -> bool {
         let (system, graph) = (&self.system, self.system.graph());
         // M is a sum over bodies, which for a long chain is longer than the integrated equations.
@@ -89,7 +89,7 @@ fn complement<'a>(rows: impl Iterator<Item = &'a [f64]>, k: usize) -> Vec<Vec<f6
     basis.split_off(normals)
 }
 
-/// Whether Gaussian elimination meets a negative pivot, except those that are negligible relative to `size`.
+/// Whether Gaussian elimination meets a negative pivot that is not negligible relative to `size`.
 fn is_negative_somewhere(mut form: Vec<Vec<f64>>, size: f64) -> bool {
     for p in 0..form.len() {
         let pivot = form[p][p];

@@ -11,11 +11,11 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::document::Expression;
 use crate::names::stage::Stage;
 
-/// A coefficient smaller than this fraction of the largest of its row is not a pivot.
+/// A coefficient smaller than this fraction of the largest in its row is not used as a pivot.
 const SMALL: f64 = 1e-3;
 
-/// The completion of the definitions to a frame: symbols of quasi-velocities, their definitions in x', and
-/// their constraints.
+/// The quasi-velocities that complete the definitions to a frame: their symbols, their definitions in terms
+/// of x', and the constraints that they come from.
 #[derive(Default)]
 struct Completion<'g> {
     symbols: Vec<Expr<'g>>,
@@ -24,15 +24,15 @@ struct Completion<'g> {
 }
 
 impl<'g> Assembler<'g, '_> {
-    /// The frame of η = a x' + a_0, and the quasi-velocities that complete the declared ones if these are fewer than
-    /// the coordinates.
+    /// The frame defined by η = a x' + a_0, and the quasi-velocities that complete the declared ones if there are
+    /// fewer of these than coordinates.
     ///
     /// The definitions, the constraints on velocities that contain x', and the time derivatives of those on
-    /// positions must together determine x'. If all constraints are on velocities, they complete the frame,
-    /// as quasi-velocities that vanish. If some are on positions, velocities x' complete it, provided that
-    /// its matrix is then regular everywhere, and the constraints have multipliers, for which other
-    /// independent velocities are taken wherever the η do not determine x'; otherwise the constraints
-    /// complete it, and it is singular only where the η do not determine x'.
+    /// positions must together determine x'. If all constraints are on velocities, their left-hand sides
+    /// complete the frame, as quasi-velocities that vanish. If some are on positions, velocities x' complete
+    /// the frame, provided that its matrix is then regular everywhere; the constraints then have multipliers,
+    /// and other independent velocities are taken wherever the η do not determine x'. Otherwise the
+    /// constraints complete the frame, and it is singular only where the η do not determine x'.
     pub(super) fn frame_of_definitions(
         &mut self,
         time: Expr<'g>,
@@ -76,7 +76,7 @@ impl<'g> Assembler<'g, '_> {
         Ok((frame, completion.symbols))
     }
 
-    /// The definitions of the quasi-velocities, in which x' are symbols.
+    /// The definitions of the quasi-velocities, with x' as symbols.
     fn definitions(&mut self) -> Result<Vec<Expr<'g>>, ModelError> {
         let mut definitions = Vec::new();
         for quasi_velocity in &self.model.document().quasi_velocities {
@@ -92,7 +92,7 @@ impl<'g> Assembler<'g, '_> {
         Ok(definitions)
     }
 
-    /// The matrix a of the definitions.
+    /// The matrix a in the definitions η = a x' + a_0.
     fn coefficients_of(&self, definitions: &[Expr<'g>]) -> Result<Vec<Vec<Expr<'g>>>, ModelError> {
         let velocities = self.scope.velocities();
         let texts = self.model.document().quasi_velocities.iter().filter_map(|q| q.is.as_ref());
@@ -104,11 +104,11 @@ impl<'g> Assembler<'g, '_> {
         definitions.iter().zip(texts).map(row).collect()
     }
 
-    /// Those constraints, in velocities x', that are independent and restrict the velocities left open by the
-    /// definitions, each with its index in the text; and the system that they constrain. η in them is
-    /// replaced by its definition.
+    /// The independent constraints that restrict the velocities left open by the definitions, in terms of the
+    /// velocities x' and each with its index in the text; and the system that they constrain. In them, each η
+    /// is replaced by its definition.
     ///
-    /// Where there are as many definitions as coordinates, constraints on positions restrict these.
+    /// If there are as many definitions as coordinates, constraints on positions are left out.
     fn completing(
         &self,
         definitions: &[Expr<'g>],
@@ -140,9 +140,9 @@ impl<'g> Assembler<'g, '_> {
         Ok((kinematic, independent))
     }
 
-    /// Velocities x' that complete the rows of definitions to a matrix whose determinant depends on
-    /// parameters only, if such velocities exist: those without a pivot after an elimination with such
-    /// pivots.
+    /// Velocities x' that complete the rows of definitions to a matrix whose determinant depends only on
+    /// parameters, if such velocities exist: those without a pivot after an elimination whose pivots depend
+    /// only on parameters.
     fn regular_completion(&self, rows: &[Vec<Expr<'g>>], at: &[(Expr<'g>, f64)]) -> Option<Completion<'g>> {
         let graph = self.graph;
         let parameters: Vec<Expr<'g>> = self.model.parameters().map(|(name, _)| graph.symbol(name)).collect();
@@ -178,8 +178,9 @@ impl<'g> Assembler<'g, '_> {
         Some(Completion { values: symbols.clone(), symbols, constraints: Vec::new() })
     }
 
-    /// The completion by the constraints themselves, those on velocities first, which are marked as
-    /// quasi-velocities; if there are more than needed, by those that are independent of the `rows`.
+    /// The completion by the constraints themselves: first those on velocities, which are marked as defining
+    /// quasi-velocities. If there are more than needed, only those that are independent of the `rows` are
+    /// used.
     fn completed_by(
         &self,
         mut rows: Vec<Vec<Expr<'g>>>,
@@ -208,7 +209,7 @@ impl<'g> Assembler<'g, '_> {
         completion
     }
 
-    /// The first definition that depends on the preceding ones; it may contain no velocity at all.
+    /// The error for the first definition that depends on the preceding ones, or contains no velocity at all.
     fn dependent(
         &self,
         rows: &[Vec<Expr<'g>>],

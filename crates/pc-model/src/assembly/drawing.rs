@@ -1,4 +1,4 @@
-//! Drawings of a model: shapes of its text, bodies, joints and points.
+//! Drawings of a model: its bodies, joints and points, and the shapes given in its text.
 
 use pc_mech::{Expr, Graph, Matrix};
 
@@ -9,15 +9,15 @@ use crate::model::model::Model;
 use crate::names::scope::Scope;
 use crate::names::stage::Stage;
 
-/// A place as functions of (t, x, η).
+/// The coordinates of a point in space, as functions of (t, x, η).
 pub type Spot<'g> = [Expr<'g>; 3];
 
-/// A shape that follows the motion, by functions of (t, x, η).
+/// A shape that follows the motion, described by functions of (t, x, η).
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape<'g> {
     /// A dot, with its own label.
     Point {
-        /// Its place.
+        /// Its position.
         at: Spot<'g>,
         /// Its name.
         label: Option<String>,
@@ -29,7 +29,7 @@ pub enum Shape<'g> {
     },
     /// A disc.
     Disc {
-        /// Its middle.
+        /// Its centre.
         at: Spot<'g>,
         /// A vector perpendicular to it.
         normal: Spot<'g>,
@@ -38,25 +38,25 @@ pub enum Shape<'g> {
     },
     /// A sphere.
     Sphere {
-        /// Its middle.
+        /// Its centre.
         at: Spot<'g>,
         /// Its radius.
         radius: Expr<'g>,
     },
     /// A box.
     Box {
-        /// Its middle.
+        /// Its centre.
         at: Spot<'g>,
         /// The lengths of its edges.
         size: Spot<'g>,
-        /// From its axes to those of space.
+        /// The rotation matrix from its axes to the fixed axes.
         rotation: Matrix<Expr<'g>>,
     },
-    /// The axes of a body that turns.
+    /// The axes of a body with an orientation.
     Axes {
         /// Their common point.
         at: Spot<'g>,
-        /// From its axes to those of space.
+        /// The rotation matrix from its axes to the fixed axes.
         rotation: Matrix<Expr<'g>>,
     },
     /// A spring.
@@ -66,14 +66,14 @@ pub enum Shape<'g> {
         /// The other.
         to: Spot<'g>,
     },
-    /// The path that a point has left behind.
+    /// The path that a point has traced so far.
     Trace {
         /// The point.
         at: Spot<'g>,
     },
     /// Words.
     Text {
-        /// The place where they begin.
+        /// The position where they begin.
         at: Spot<'g>,
         /// The words.
         text: String,
@@ -81,7 +81,8 @@ pub enum Shape<'g> {
 }
 
 impl Model {
-    /// The drawing of the model: bodies with the rods from joint to joint, points, then the shapes of `[[draw]]`.
+    /// The drawing of the model: bodies on joints, with rods from joint to joint, other bodies, points, then the
+    /// shapes of `[[draw]]`.
     ///
     /// # Errors
     /// [`ModelError`] at the expression that cannot be resolved.
@@ -155,7 +156,7 @@ fn resolved<'g>(scope: &mut Scope<'g, '_>, draw: &Draw) -> Result<Shape<'g>, Mod
     })
 }
 
-/// A place; two expressions give one in a plane.
+/// A position in space; two expressions give a position in a plane.
 fn spot<'g>(scope: &mut Scope<'g, '_>, place: &[Expression], stage: Stage) -> Result<Spot<'g>, ModelError> {
     let mut at = [Expr::ZERO; 3];
     for (value, expression) in at.iter_mut().zip(place) {
@@ -176,8 +177,8 @@ fn rotation<'g>(
     Ok(Matrix::from_fn(3, 3, |i, j| values[3 * i + j]))
 }
 
-/// For each body, a rod from its joint to the joints on it, or to its mass centre if there are none, and
-/// the mass centre.
+/// For each body, its mass centre and a rod from its joint to each joint on it, or to the mass centre if
+/// there are none.
 fn on_joints<'g>(assembly: &Assembly<'g>) -> Vec<Shape<'g>> {
     let Some(tree) = assembly.system.tree() else { return Vec::new() };
     let (motions, graph) = (tree.motions(), assembly.system.graph());
@@ -201,7 +202,7 @@ fn on_joints<'g>(assembly: &Assembly<'g>) -> Vec<Shape<'g>> {
 }
 
 impl<'g> Shape<'g> {
-    /// Its functions, in an order that depends only on its kind.
+    /// The functions that describe it, in an order that depends only on the kind of shape.
     pub fn functions(&self) -> Vec<Expr<'g>> {
         match self {
             Shape::Point { at, .. } | Shape::Trace { at } | Shape::Text { at, .. } => at.to_vec(),
@@ -214,7 +215,7 @@ impl<'g> Shape<'g> {
         }
     }
 
-    /// The shape with velocities substituted.
+    /// The shape with the velocities substituted.
     fn substituted(self, graph: &'g Graph, known: &[(Expr<'g>, Expr<'g>)]) -> Shape<'g> {
         let values = graph.substitute(&self.functions(), known);
         let at = |n: usize| [values[n], values[n + 1], values[n + 2]];

@@ -13,14 +13,14 @@ use crate::names::scope::entry;
 use crate::names::stage::Stage;
 
 impl<'g> Assembler<'g, '_> {
-    /// The functions that pass through zero, with ẋ = b η + b_0 substituted, in the order of the file.
+    /// The functions whose zeros are the events, with ẋ = b η + b_0 substituted, in the order of the file.
     pub(super) fn crossings(&mut self, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Result<Vec<Expr<'g>>, ModelError> {
         let events = &self.model.document().events;
         events.iter().map(|event| self.at_event(&event.when, x_dot)).collect()
     }
 
-    /// The events with these crossings, and their resets, which need no value before the event. First-order
-    /// states begin at the component `first_state` of the state.
+    /// The events whose functions are `crossings`, with their resets, which need not have a value before the
+    /// event. First-order states begin at component `first_state` of the state.
     pub(super) fn events(
         &mut self,
         crossings: Vec<Expr<'g>>,
@@ -136,7 +136,7 @@ impl<'g> Assembler<'g, '_> {
     }
 }
 
-/// Whether a constraint just says that this quasi-velocity vanishes.
+/// Whether a constraint only says that this quasi-velocity vanishes.
 fn vanishes<'g>(constraints: &ConstraintTreatment<'g>, eta: Expr<'g>) -> bool {
     let constraints = constraints.multipliers().map_or(&[][..], |multipliers| multipliers.constraints());
     constraints.iter().any(|constraint| constraint.expression() == eta)

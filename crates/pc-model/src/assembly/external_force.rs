@@ -1,4 +1,4 @@
-//! Forces on a model that are computed outside.
+//! Forces on a model that are computed outside it.
 
 use crate::model::model::Model;
 
@@ -13,10 +13,10 @@ pub struct NotForced {
 }
 
 impl Model {
-    /// Declares that a force computed outside, such as that of a controller, acts on a quasi-velocity; on a
-    /// coordinate if no quasi-velocity is declared. The system then has an [external
-    /// force](pc_mech::System::external_forces), and a motion one more input: zero until it is set, or [given
-    /// by a function](pc_mech::Motion::forced).
+    /// Declares that a force computed outside the model, such as that of a controller, acts on a
+    /// quasi-velocity, or on a coordinate if no quasi-velocity is declared. The system then has an [external
+    /// force](pc_mech::System::external_forces), and a motion has one more input: it is zero until it is set,
+    /// or is [given by a function](pc_mech::Motion::forced).
     ///
     /// ```
     /// use pc_mech::{Graph, VectorField};
@@ -36,7 +36,7 @@ impl Model {
     /// ```
     ///
     /// # Errors
-    /// [`NotForced`] with the existing names.
+    /// [`NotForced`], which lists the existing names.
     pub fn external_force(&mut self, on: &str) -> Result<(), NotForced> {
         let known = self.forceable();
         if !known.iter().any(|known| known == on) {

@@ -1,4 +1,4 @@
-//! The frame of a model, and its errors.
+//! The frame of a model, and the errors in it.
 
 use pc_mech::{AlgebraError, Expr, Frame};
 
@@ -11,10 +11,11 @@ use crate::names::scope::entry;
 use crate::names::stage::Stage;
 
 impl<'g> Assembler<'g, '_> {
-    /// The frame in one of its four ways: kinematics, definitions, neither (Lagrange), or no coordinates at all.
+    /// The frame, given in one of four ways: by kinematics, by definitions, by neither (Lagrange), or without
+    /// coordinates.
     ///
-    /// Definitions are completed by constraints, or by velocities, `at` the start: these are quasi-velocities
-    /// after the declared ones.
+    /// Constraints or velocities x' complete the definitions, as quasi-velocities that come after the
+    /// declared ones; `at` are the values at the start.
     pub(super) fn frame(
         &mut self,
         constraints: &mut [Written<'g>],

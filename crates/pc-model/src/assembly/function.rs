@@ -11,7 +11,8 @@ use crate::names::scope::Scope;
 use crate::names::stage::Stage;
 
 impl Model {
-    /// The function of (t, x, η) given by a text in the names of the model, where x' is the velocity of a coordinate x.
+    /// The function of (t, x, η) given by a text that uses the names of the model, where x' is the velocity of a
+    /// coordinate x.
     ///
     /// ```
     /// use pc_mech::Graph;
@@ -27,7 +28,7 @@ impl Model {
     /// ```
     ///
     /// # Errors
-    /// [`ModelError`] at the place in `text` that causes it.
+    /// [`ModelError`] at the place in `text` that causes the error.
     pub fn function<'g>(&self, assembly: &Assembly<'g>, text: &str) -> Result<Expr<'g>, ModelError> {
         let (system, source) = (&assembly.system, Source::new("expression", text));
         let expression = Expression::of(&source)?;

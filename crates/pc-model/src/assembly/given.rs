@@ -11,8 +11,8 @@ use crate::names::scope::Scope;
 use crate::names::stage::Stage;
 
 impl<'g> Assembler<'g, '_> {
-    /// Their symbols, each with its definition in terms of (t, x, η). A definition that does not vanish for
-    /// η = 0 is refused: it would change the energy y·η − L.
+    /// The symbols of the given quasi-velocities, each with its definition in terms of (t, x, η). A
+    /// definition that does not vanish for η = 0 is refused: it would change the energy y·η − L.
     pub(super) fn given_quasi_velocities(
         &self,
         eta: &[Expr<'g>],

@@ -1,4 +1,4 @@
-//! Joints of bodies that no inertia resists.
+//! Joints whose motion no inertia resists.
 
 use pc_mech::Expr;
 
@@ -7,13 +7,13 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::document::{Document, Joint, JointKind, TreeBody};
 
-/// A velocity so large that the potential energy is small in comparison.
+/// A velocity so large that the potential energy is small compared with the kinetic energy.
 const FAST: f64 = 1e6;
 
-/// The rounding left of a vanishing kinetic energy, as a fraction of its terms.
+/// The rounding error that is left where the kinetic energy vanishes, as a fraction of its terms.
 const ROUNDING: f64 = 1e-12;
 
-/// A motion of a joint along or about a direction.
+/// How a joint moves: along a direction or about it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
     Slide,
@@ -23,7 +23,8 @@ enum Way {
 impl<'g> Assembly<'g> {
     /// Checks that some inertia resists each joint by itself: ∂²L/∂η_s² vanishes for a point mass on its axis.
     ///
-    /// Constraints may do the work of inertia, and so may a kinetic energy in `[lagrangian]`; neither is judged here.
+    /// Constraints may take the place of inertia, and so may a kinetic energy in `[lagrangian]`; models that have
+    /// either are not checked here.
     pub(crate) fn check_inertia(&self) -> Result<(), ModelError> {
         let document = &self.document;
         let is_given =
@@ -71,7 +72,7 @@ impl<'g> Assembly<'g> {
     }
 }
 
-/// Whether a body, or one that hangs on it, has an `inertia`.
+/// Whether a body, or any body attached to it, directly or through others, has an `inertia`.
 fn has_inertia(document: &Document, body: &TreeBody) -> bool {
     let mut below = vec![body.name.text.as_str()];
     while let Some(name) = below.pop() {
@@ -85,7 +86,7 @@ fn has_inertia(document: &Document, body: &TreeBody) -> bool {
     false
 }
 
-/// The error of quasi-velocity `number` of a joint.
+/// The error for quasi-velocity `number` of a joint.
 fn fault(body: &TreeBody, number: usize) -> MeaningError {
     let (way, direction) = direction(&body.joint, number);
     let (body, kind) = (body.name.text.clone(), body.joint.kind.word());
@@ -95,7 +96,7 @@ fn fault(body: &TreeBody, number: usize) -> MeaningError {
     }
 }
 
-/// How quasi-velocity `number` moves a body, and along or about which direction.
+/// Whether quasi-velocity `number` slides or turns a body, and along or about which direction.
 fn direction(joint: &Joint, number: usize) -> (Way, String) {
     let vector = |[x, y, z]: [f64; 3]| format!("({x}, {y}, {z})");
     let axis = |place: usize| joint.axes.get(place).map_or_else(String::new, |&axis| vector(axis));

@@ -1,4 +1,4 @@
-//! What is derived once for the values of time and state at which it is first asked for.
+//! A result that is derived only once for the values of time and state at which it is first requested.
 
 use std::cell::OnceCell;
 
@@ -15,10 +15,10 @@ impl<T> Default for Kept<T> {
 }
 
 impl<T: Clone> Kept<T> {
-    /// The result at the values `at`, derived unless it is that of the first call.
+    /// The result at the values `at`, derived anew unless they are those of the first successful call.
     ///
     /// # Errors
-    /// Those of the derivation, which is tried again by the next call.
+    /// The errors of the derivation, which the next call tries again.
     pub(super) fn at<E>(
         &self,
         at: &[(Expr<'_>, f64)],

@@ -7,11 +7,11 @@ use crate::model::model::Model;
 use crate::names::scope::Scope;
 
 impl<'g> Assembly<'g> {
-    /// The start of a model of the same text with other values, as [`start`](Assembly::start) is that of the model which was
-    /// assembled: it depends on frame and constraints alone, so that nothing else is derived again.
+    /// The start of another model with the same text but other values, as [`start`](Assembly::start) is that of the
+    /// assembled model: it depends only on the frame and the constraints, so that nothing else is derived again.
     ///
     /// # Errors
-    /// [`ModelError`] where that model has no start.
+    /// [`ModelError`] if that model has no start.
     pub(crate) fn start_with(&self, model: &Model) -> Result<Vec<f64>, ModelError> {
         let graph = self.system.graph();
         let mut assembler = Assembler { model, graph, scope: Scope::new(graph, model.document()) };

@@ -1,9 +1,10 @@
-//! Bodies whose orientation is a matrix of redundant coordinates: a rotation at the start, and along every
-//! motion from it.
+//! Checks on bodies whose orientation is a matrix of redundant coordinates: it must be a rotation at the
+//! start, and along every motion from there.
 //!
-//! With as many coordinates as quasi-velocities, RᵀR has to be a multiple of 1 everywhere, which the
-//! mechanics checks. Redundant coordinates, such as nine direction cosines, may give a rotation on the
-//! surface of the motion only, which is known from the start and the operators X_s along it.
+//! If there are as many coordinates as quasi-velocities, RᵀR has to be a multiple of 1 everywhere, which
+//! `pc_mech` checks. Redundant coordinates, such as nine direction cosines, may give a rotation only on the
+//! surface that contains the motion, which is known from the start and from the operators X_s along the
+//! surface.
 
 use pc_algebra::Frame;
 use pc_mech::Expr;
@@ -15,13 +16,13 @@ use crate::diagnostics::source::Place;
 use crate::document::Orientation;
 use crate::names::stage::Stage;
 
-/// The greatest relative deviation of RᵀR from a multiple of 1: far above the rounding of numbers with all
-/// their digits, and below any effect on ω.
+/// The greatest relative deviation of RᵀR from a multiple of 1: far above the rounding error of numbers
+/// written with all their digits, and too small to affect ω.
 const OFF: f64 = 1e-10;
 
 impl<'g> Assembler<'g, '_> {
-    /// Checks that the matrices of bodies are rotations at the start, given by `values`, and remain so along
-    /// the frame.
+    /// Checks that the matrices of bodies are rotations at the start, given by `values`, and remain rotations
+    /// along the operators of the frame.
     pub(super) fn check_orientations(
         &mut self,
         frame: &Frame<'g>,
@@ -51,7 +52,7 @@ impl<'g> Assembler<'g, '_> {
     }
 
     /// The largest defect of the derivatives of RᵀR along the operators of the frame, X_0 included, that
-    /// exceeds rounding for RᵀR of this size. Missing values are reported elsewhere.
+    /// exceeds rounding error for an RᵀR of this size. Missing values are reported elsewhere.
     fn defect_along(
         &self,
         frame: &Frame<'g>,
@@ -76,7 +77,8 @@ impl<'g> Assembler<'g, '_> {
     }
 }
 
-/// The deviation of a symmetric matrix, diagonal first, from a multiple of 1.
+/// The deviation from a multiple of 1 of a symmetric matrix, given by its diagonal and then its other
+/// entries.
 fn defect(matrix: &[f64]) -> f64 {
     let (diagonal, beside) = matrix.split_at(3);
     let mean = diagonal.iter().sum::<f64>() / 3.0;

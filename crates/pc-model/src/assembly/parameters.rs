@@ -1,4 +1,4 @@
-//! The values of parameters and inputs: numbers, expressions in those before them, and tables.
+//! The values of parameters and inputs: numbers, expressions in the preceding ones, and tables.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::document::{Document, Expression, InputValue, Name};
 use crate::names::scope::Scope;
 
 /// The values of the parameters of a model, then of its inputs, in the order of declaration. A value given by
-/// an expression in earlier ones follows these until it is itself set.
+/// an expression in earlier ones is updated with these until it is itself set.
 #[derive(Clone, Debug)]
 pub struct Parameters {
     values: Vec<f64>,
@@ -24,17 +24,17 @@ pub struct Parameters {
 /// The source of a value.
 #[derive(Clone, Debug)]
 enum Formula {
-    /// It was given as a number.
+    /// The value was given as a number.
     Number,
-    /// An expression in the parameters before it; its program takes all of them.
+    /// An expression in the preceding parameters, compiled to a program that takes all parameters.
     Of(Box<Interpreter>),
-    /// A function of time; the value is that at the start.
+    /// A table, as a function of time; the value is that at the start.
     Table(Arc<Table>),
     /// An invalid expression or table.
     Wrong(ModelError),
 }
 
-/// The names of parameters and inputs, each with its expression, in their order; an input with a table has
+/// The names of parameters and inputs, in their order, each with its expression; an input with a table has
 /// none.
 fn written(document: &Document) -> impl Iterator<Item = (&Name, Option<&Expression>)> {
     let parameters =
@@ -99,7 +99,8 @@ impl Parameters {
         .collect()
     }
 
-    /// Gives number `place` a value, which replaces its expression. Values that are expressions in it follow.
+    /// Gives the parameter or input with index `place` a value, which replaces its expression. Values that
+    /// are expressions in it are updated.
     ///
     /// # Panics
     /// If there is no such parameter.
@@ -109,10 +110,10 @@ impl Parameters {
         self.follow();
     }
 
-    /// Gives all values, which replace the expressions. Tables are still read.
+    /// Sets all values, which replace the expressions. Tables stay in use.
     ///
     /// # Panics
-    /// Unless their number is right.
+    /// If the number of values is wrong.
     pub fn set_all(&mut self, values: &[f64]) {
         self.values.copy_from_slice(values);
         for formula in &mut self.formulas {
@@ -122,18 +123,19 @@ impl Parameters {
         }
     }
 
-    /// Whether number `place` follows others by an expression.
+    /// Whether the value with index `place` is given by an expression in others.
     pub fn follows(&self, place: usize) -> bool {
         matches!(self.formulas.get(place), Some(Formula::Of(_)))
     }
 
-    /// Whether number `place` is an input with a table.
+    /// Whether the value with index `place` is that of an input with a table.
     pub fn is_table(&self, place: usize) -> bool {
         matches!(self.formulas.get(place), Some(Formula::Table(_)))
     }
 
     /// # Errors
-    /// [`ModelError`] at the first entry of the document, whose values these are, that has no finite value.
+    /// [`ModelError`] at the first entry that has no finite value; `document` is the one these values belong
+    /// to.
     pub(crate) fn check(&self, document: &Document) -> Result<(), ModelError> {
         for ((formula, value), (name, expression)) in
             self.formulas.iter().zip(&self.values).zip(written(document))

@@ -1,4 +1,4 @@
-//! The start of a motion from its given parts.
+//! The start of a motion, found from its given parts.
 
 use pc_algebra::affine;
 use pc_mech::{Expr, Frame, Graph};
@@ -12,29 +12,33 @@ use crate::model::model::Model;
 use crate::names::scope::{Scope, entry};
 use crate::names::stage::Stage;
 
-/// The greatest remainder of a unit vector that depends on others: rounding.
+/// A unit vector that leaves no larger remainder than this is treated as linearly dependent on others: the
+/// remainder is rounding error.
 const DEPENDENT: f64 = 1e-9;
 
-/// Velocities that differ by less than this fraction of those that they follow from are equal.
+/// Velocities are considered equal if they differ by less than this fraction of those from which they are
+/// determined.
 const OFF: f64 = 1e-8;
 
-/// The given start.
+/// The parts of the start that are given.
 pub(super) struct Given {
-    /// Coordinates, then declared quasi-velocities, or velocities if none is declared; zero if not given.
+    /// The values of coordinates, then of the declared quasi-velocities, or of velocities if none is
+    /// declared; zero if not given.
     pub(super) values: Vec<f64>,
-    /// Whether a value is given for each.
+    /// Whether each of these values is given.
     is_given: Vec<bool>,
-    /// Velocities of coordinates in addition to quasi-velocities, in the order of `start_velocities`.
+    /// Velocities of coordinates that are given in addition to quasi-velocities, in the order of
+    /// `start_velocities`.
     velocities: Vec<f64>,
-    /// First-order states; zero if not given.
+    /// The values of first-order states; zero if not given.
     pub(super) states: Vec<f64>,
 }
 
-/// The start values alone: of coordinates, of the declared quasi-velocities or of the velocities, of
-/// first-order states.
+/// The given start values alone: those of the coordinates, of the declared quasi-velocities or else the
+/// velocities, and of the first-order states.
 ///
 /// # Errors
-/// [`ModelError`] if one is not a number.
+/// [`ModelError`] if a value is not a number.
 pub(crate) fn start(model: &Model, graph: &Graph) -> Result<Vec<f64>, ModelError> {
     let parameters: Vec<(Expr<'_>, f64)> =
         model.parameters().map(|(name, value)| (graph.symbol(name), value)).collect();
@@ -100,13 +104,13 @@ impl<'g> Assembler<'g, '_> {
         Err(self.scope.error(expression, expression.ast.span, fault))
     }
 
-    /// Coordinates and all quasi-velocities `eta` of the frame at the start. Those not given follow from
-    /// given velocities, b η + b_0 = x', and from the constraints; if these leave them open, the declared
-    /// ones are zero.
+    /// The values at the start of the coordinates and of all quasi-velocities `eta` of the frame.
+    /// Quasi-velocities that are not given are determined from given velocities, b η + b_0 = x', and from the
+    /// constraints; if these leave them open, the declared ones are zero.
     ///
     /// # Errors
     /// [`MeaningError::StartVelocity`] for a velocity that the others contradict; [`MeaningError::StartOpen`]
-    /// if those that complete the definitions are left open.
+    /// if the quasi-velocities that complete the definitions are left open.
     pub(super) fn start_state(
         &self,
         frame: &Frame<'g>,
@@ -165,8 +169,8 @@ impl<'g> Assembler<'g, '_> {
         Ok(start)
     }
 
-    /// C η = −c_0 for the constraints that have values, with rows of length one: velocities are compared, whatever the
-    /// size of a constraint.
+    /// The equations C η = −c_0 of the constraints that have values, with rows scaled to length one, so that
+    /// velocities are compared whatever the scale of a constraint.
     fn conditions(
         &self,
         frame: &Frame<'g>,
@@ -187,7 +191,7 @@ impl<'g> Assembler<'g, '_> {
         conditions
     }
 
-    /// b η = x' − b_0 for the given velocities.
+    /// Adds the equations b η = x' − b_0 for the given velocities.
     fn add_velocities(
         &self,
         equations: &mut Equations,
@@ -215,7 +219,8 @@ impl<'g> Assembler<'g, '_> {
         Ok(())
     }
 
-    /// C and c_0 of a constraint in the quasi-velocities of the frame; `None` if it is not affine.
+    /// The coefficients C and c_0 of a constraint in terms of the quasi-velocities of the frame; `None` if it
+    /// is not affine.
     fn condition(
         &self,
         written: &Written<'g>,
@@ -234,14 +239,15 @@ impl<'g> Assembler<'g, '_> {
     }
 }
 
-/// Linear equations, each of length one and orthogonal to the preceding ones.
+/// Linear equations, whose rows have length one and are each orthogonal to the preceding ones.
 #[derive(Default)]
 struct Equations {
     rows: Vec<(Vec<f64>, f64)>,
 }
 
 impl Equations {
-    /// Adds row · η = value. Returns the value of row · η that earlier equations determine, if that differs.
+    /// Adds the equation row · η = value. If earlier equations determine a different value of row · η,
+    /// returns that value.
     fn add(&mut self, row: &[f64], value: f64) -> Option<f64> {
         let length = norm(row);
         let (rest, missing) = self.rest(row, value);
@@ -253,14 +259,14 @@ impl Equations {
         (missing.abs() > OFF * value.abs().max(length * self.largest(row))).then_some(value - missing)
     }
 
-    /// The largest of the unknowns that a row contains, as far as they are known: a value that is small in
-    /// comparison is small in any unit.
+    /// The largest magnitude of the unknowns in a row, as far as they are known: a value that is small in
+    /// comparison is small in any units.
     fn largest(&self, row: &[f64]) -> f64 {
         let known = self.solution(row.len()).into_iter().zip(row).filter(|&(_, &entry)| entry != 0.0);
         known.fold(0.0, |largest, (value, _)| largest.max(value.abs()))
     }
 
-    /// The part of an equation that is independent of the present ones.
+    /// The part of an equation that is independent of those already present.
     fn rest(&self, row: &[f64], value: f64) -> (Vec<f64>, f64) {
         let (mut rest, mut missing) = (row.to_vec(), value);
         // Two passes are enough.

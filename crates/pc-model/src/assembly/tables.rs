@@ -17,7 +17,7 @@ const COLUMNS: &str = "a file has a line of names, then lines of numbers, with c
 /// The table of an input; `None` for a constant.
 ///
 /// # Errors
-/// [`ModelError`] at the entry that is wrong, or whose file is wrong.
+/// [`ModelError`] at an entry that is wrong or that names a wrong file.
 pub(crate) fn of(document: &Document, input: &Input) -> Result<Option<Table>, ModelError> {
     match &input.value {
         InputValue::Constant(_) => Ok(None),
@@ -102,7 +102,7 @@ fn from_file(document: &Document, file: &TableFile) -> Result<Table, ModelError>
     })
 }
 
-/// The entries of a line, without spaces and quotes around them.
+/// The entries of a line, without the spaces and quotes around them.
 fn cells(line: &str) -> impl Iterator<Item = &str> {
     line.split(',').map(|cell| cell.trim().trim_matches('"'))
 }

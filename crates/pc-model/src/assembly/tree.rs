@@ -1,4 +1,4 @@
-//! Bodies on joints: their expressions, resolved and checked in place.
+//! Bodies on joints: their expressions are resolved, and errors are located in the file.
 
 use pc_mech::{Expr, Inertia, Tree};
 
@@ -9,12 +9,13 @@ use crate::document::{self, Expression, JointRotation};
 use crate::names::points::hung;
 use crate::names::stage::Stage;
 
-/// The greatest deviation of a matrix of constants from a rotation, and of the length of a quaternion from 1:
-/// the rounding of numbers with nine digits.
+/// The greatest deviation allowed of a matrix of constants from a rotation, and of the length of a quaternion
+/// from 1: the rounding error of numbers written with nine digits.
 const OFF: f64 = 1e-8;
 
 impl<'g> Assembler<'g, '_> {
-    /// The bodies on joints; `x_dot` are the symbols x' with b η + b_0. `None` if there are no such bodies.
+    /// The bodies on joints; `x_dot` pairs each symbol x' with its value b η + b_0. `None` if there are no
+    /// such bodies.
     pub(super) fn tree(&mut self, x_dot: &[(Expr<'g>, Expr<'g>)]) -> Result<Option<Tree<'g>>, ModelError> {
         let document = self.model.document();
         if document.tree.is_empty() {
@@ -47,7 +48,7 @@ impl<'g> Assembler<'g, '_> {
         Ok(Some(tree))
     }
 
-    /// ẋ of the coordinates of joints, which come first, in terms of η.
+    /// The velocities ẋ of the coordinates of joints, which come first, in terms of η.
     pub(super) fn joint_velocities(&mut self) -> Result<Vec<Expr<'g>>, ModelError> {
         let document = self.model.document();
         let mut bodies = Vec::with_capacity(document.tree.len());
@@ -58,7 +59,8 @@ impl<'g> Assembler<'g, '_> {
         Ok(tree.velocities())
     }
 
-    /// Checks that the rotations of joints are rotations, with these values of the parameters.
+    /// Checks that the matrices given as rotations of joints are rotations for these values of the
+    /// parameters.
     pub(super) fn check_rotations(&mut self, parameters: &[(Expr<'g>, f64)]) -> Result<(), ModelError> {
         for body in &self.model.document().tree {
             if let Some(JointRotation::Matrix(entries)) = &body.joint.rotation {
@@ -87,8 +89,8 @@ impl<'g> Assembler<'g, '_> {
         Err(self.model.document().error(&place, MeaningError::NotARotation { defect, determinant }))
     }
 
-    /// Makes the length of quaternions 1 at the start, if it differs from 1 by the rounding of the written numbers;
-    /// `start` begins with the values of the coordinates.
+    /// Scales quaternions to length 1 at the start, if their length differs from 1 only by the rounding of the
+    /// written numbers; `start` begins with the values of the coordinates.
     pub(super) fn normalise_quaternions(&self, start: &mut [f64]) -> Result<(), ModelError> {
         let document = self.model.document();
         let mut first = 0;

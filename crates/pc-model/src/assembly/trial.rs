@@ -1,4 +1,4 @@
-//! Whether a state satisfies the constraints.
+//! Finds out whether a state satisfies the constraints.
 
 use pc_mech::{CompileOptions, Constraint, Expr, MechError, System, VectorField};
 use pc_nonholo::ConstraintClassification;
@@ -7,26 +7,26 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::model::model::Model;
 
-/// A start whose distance from a constraint, as a displacement of a coordinate or velocity, is less than this fraction of it is
-/// off by the rounding of its digits. Small coordinates may be as far off as larger ones of the constraint, and as a coordinate of
-/// size 1.
+/// A start is considered to satisfy a constraint, up to the rounding of its digits, if a displacement of a coordinate or velocity
+/// by less than this fraction of it would make it do so. Small coordinates may be off by as much as larger ones in the constraint,
+/// and by as much as a coordinate of size 1.
 const OFF: f64 = 1e-8;
 
-/// If all coordinates of a constraint are smaller than this, they are in small units, and 1 is not a measure
-/// for them.
+/// If all coordinates in a constraint are smaller than this, they are presumably in other units, and 1 is not
+/// a measure for them.
 const SMALL: f64 = 1e-2;
 
-/// A coordinate may always be this far off, times [`OFF`]: this is the rounding of numbers of order one, such as cos(π/2).
+/// A coordinate may always be off by this times [`OFF`]: the rounding error of numbers of order one, such as cos(π/2).
 const LEAST: f64 = 1e-7;
 
-/// The indices of the components of the start that are not moved to the constraints.
+/// The indices of the components of the start that are left unmoved when it is moved onto the constraints.
 pub(super) struct StartHeld {
     coordinates: Vec<usize>,
     quasi_velocities: Vec<usize>,
 }
 
 impl StartHeld {
-    /// The components that the model holds, and the first `prescribed` quasi-velocities.
+    /// The components that the model holds fixed, and the first `prescribed` quasi-velocities.
     pub(super) fn new(model: &Model, prescribed: usize) -> StartHeld {
         let n = model.document().coordinates.len();
         let (coordinates, named): (Vec<usize>, Vec<usize>) =
@@ -97,7 +97,7 @@ impl<'g> Trial<'_, 'g> {
     /// Checks that the constraints and their rates have values.
     ///
     /// # Errors
-    /// [`MeaningError::NotFinite`] at the first that has no value.
+    /// [`MeaningError::NotFinite`] at the first constraint that has no value.
     pub(super) fn check_finite(&self, state: &[f64]) -> Result<(), ModelError> {
         for constraint in self.constraints {
             let value = self.value(constraint.velocity(self.system), state);
@@ -116,8 +116,8 @@ impl<'g> Trial<'_, 'g> {
         Ok(())
     }
 
-    /// Checks that dropped constraints vanish where the binding ones do: a position that follows from others
-    /// may do so up to a constant.
+    /// Checks that dropped constraints hold wherever the binding ones do: a condition on positions may follow
+    /// from others only up to a constant.
     ///
     /// # Errors
     /// [`MeaningError::Contradictory`]
@@ -144,7 +144,7 @@ impl<'g> Trial<'_, 'g> {
     /// Checks that all constraints are satisfied.
     ///
     /// # Errors
-    /// [`MeaningError::OffConstraint`] at the first that is not satisfied.
+    /// [`MeaningError::OffConstraint`] at the first constraint that is not satisfied.
     pub(super) fn check(&self, state: &[f64]) -> Result<(), ModelError> {
         let off =
             |constraint: &Constraint<'g>| Some((constraint.name().to_owned(), self.off(constraint, state)?));
@@ -157,7 +157,7 @@ impl<'g> Trial<'_, 'g> {
         }
     }
 
-    /// The constraint or its rate, in words, if it does not vanish, with its value.
+    /// If the constraint or its rate does not vanish, a phrase that says which of the two, and its value.
     fn off(&self, constraint: &Constraint<'g>, state: &[f64]) -> Option<(&'static str, f64)> {
         let x = self.system.frame().coordinates();
         let eta = self.system.quasi_velocities();
@@ -169,7 +169,8 @@ impl<'g> Trial<'_, 'g> {
         position.or_else(|| self.misses(rate, state).map(|residual| ("its rate is", residual)))
     }
 
-    /// The value of an expression that should vanish, if no change of the `movable` by [`OFF`] makes it zero.
+    /// The value of an expression that should vanish, unless changing the `movable` symbols by a fraction
+    /// [`OFF`] can make it zero.
     fn misses(&self, (value, movable): (Expr<'g>, &[Expr<'g>]), state: &[f64]) -> Option<f64> {
         let graph = self.system.graph();
         let slopes = graph.gradient(value, movable).into_iter().map(|slope| self.value(slope, state));

@@ -9,7 +9,7 @@ use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::source::{Place, Position, Source};
 use crate::document::is_hidden;
 
-/// A message about a place in a model file: an error, or a note.
+/// A message about a place in a model file: an error or a note.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
     /// Where.
@@ -21,7 +21,8 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// The message as shown: `file:line:column: entry: message`, the line, carets under the text, the help.
+    /// The message as shown: `file:line:column: entry: message`, then the line, carets under the text at
+    /// fault, and the help.
     pub fn render(&self, source: &Source) -> String {
         let Position { line, column } = source.position(self.place.span.start);
         let entry = match self.place.entry.as_str() {
@@ -35,12 +36,13 @@ impl Diagnostic {
     }
 }
 
-/// Names of files and keys may contain line ends and control characters for terminals.
+/// The text with hidden characters replaced: names of files and keys may contain line ends and control
+/// characters for terminals.
 fn on_one_line(text: &str) -> String {
     text.replace(is_hidden, "\u{fffd}")
 }
 
-/// The text, shortened in case of names with a thousand letters.
+/// The text, shortened if it is very long, as with names of a thousand letters.
 fn clipped(text: &str) -> String {
     match text.char_indices().nth(500) {
         Some((cut, _)) => format!("{}…", &text[..cut]),
@@ -48,7 +50,7 @@ fn clipped(text: &str) -> String {
     }
 }
 
-/// An error in a model file. It is shown with its place, the line, and a correction.
+/// An error in a model file. It is shown with its place in the file, the line, and a correction.
 #[derive(Clone, Debug, Error)]
 #[error("{}", .0.rendered)]
 pub struct ModelError(Box<Details>);
@@ -79,12 +81,12 @@ impl ModelError {
         self.0.diagnostic.place.span.clone()
     }
 
-    /// Line and column at which they begin.
+    /// The line and column at which these bytes begin.
     pub fn position(&self) -> Position {
         self.0.position
     }
 
-    /// Place, message and help, separately.
+    /// The place, the message and the help, separately.
     pub fn diagnostic(&self) -> &Diagnostic {
         &self.0.diagnostic
     }

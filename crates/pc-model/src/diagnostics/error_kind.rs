@@ -1,4 +1,4 @@
-//! The kinds of errors in a model, with corrections.
+//! The kinds of errors in a model, and how to correct them.
 
 use std::fmt;
 
@@ -17,7 +17,7 @@ pub enum ErrorKind {
     /// The file is not text.
     #[error("the file is not UTF-8 text: found byte 0x{byte:02x}")]
     NotText {
-        /// The first byte that does not fit.
+        /// The first byte that is not UTF-8.
         byte: u8,
     },
     /// The file is not TOML.
@@ -28,29 +28,29 @@ pub enum ErrorKind {
         /// A correction.
         help: &'static str,
     },
-    /// The same key twice in one table.
+    /// The same key is given twice in one table.
     #[error("`{key}` is given twice")]
     DuplicateKey {
         /// The key as written.
         key: String,
     },
-    /// The limits of its derivation are reached.
+    /// The derivation of the model reached its limits.
     #[error("{stage}: {what} ({nodes} expressions were made)")]
     Spent {
         /// Which limit.
         what: Spent,
         /// The stage of the work.
         stage: &'static str,
-        /// The number of expressions.
+        /// The number of expressions made.
         nodes: usize,
     },
-    /// Nothing in the file.
+    /// The file is empty.
     #[error("the model is empty")]
     Empty,
     /// Nothing gives the energy.
     #[error("no [lagrangian] section")]
     NoLagrangian,
-    /// Neither coordinates nor quasi-velocities.
+    /// There are neither coordinates nor quasi-velocities.
     #[error("no [coordinates] and no [quasi_velocities]: nothing moves")]
     NothingMoves,
     /// A section that does not exist.
@@ -80,9 +80,9 @@ pub enum ErrorKind {
     /// A value of the wrong type.
     #[error("expected {expected}, found {found}")]
     WrongType {
-        /// The expected type, in words.
+        /// A phrase for the expected type.
         expected: &'static str,
-        /// The type of the value given, in words.
+        /// A phrase for the type of the value given.
         found: &'static str,
         /// How the entry could be written.
         example: String,
@@ -90,9 +90,9 @@ pub enum ErrorKind {
     /// A list of the wrong length.
     #[error("expected {expected}, found {found}")]
     WrongLength {
-        /// What the list should hold, in words.
+        /// A phrase that says what the list should contain.
         expected: &'static str,
-        /// The number of its elements.
+        /// The number of elements it has.
         found: usize,
         /// How the entry could be written.
         example: &'static str,
@@ -112,7 +112,7 @@ pub enum ErrorKind {
         key: String,
         /// The entry that it needs.
         without: &'static str,
-        /// How this could be written.
+        /// How that entry could be written.
         example: &'static str,
     },
     /// An entry that joints of this kind do not have.
@@ -120,10 +120,10 @@ pub enum ErrorKind {
     OfOtherJoints {
         /// Its key.
         key: String,
-        /// What would belong to it, or replace it.
+        /// What could be written instead, or with it.
         example: &'static str,
     },
-    /// A body that is not part of a tree.
+    /// A name that is not that of a body with a joint.
     #[error("no body with a joint is called `{name}`")]
     NotInTree {
         /// The name.
@@ -131,13 +131,13 @@ pub enum ErrorKind {
         /// The existing bodies.
         known: Vec<String>,
     },
-    /// Bodies that hang on each other.
+    /// Bodies attached to each other in a circle.
     #[error("no body of these hangs on the world: {}", hanging(bodies))]
     CircularParents {
-        /// The bodies, each on the next and the last on the first.
+        /// The bodies, each attached to the next and the last to the first.
         bodies: Vec<String>,
     },
-    /// A statement about the motion of a coordinate that belongs to a joint.
+    /// An entry about the motion of a coordinate that belongs to a joint.
     #[error("the joint of `{body}` says how `{name}` moves")]
     OfJoint {
         /// The name.
@@ -145,7 +145,7 @@ pub enum ErrorKind {
         /// The body.
         body: String,
     },
-    /// Definitions by velocities beside quaternions.
+    /// A quasi-velocity defined by `is` in a model with a joint that has an angular velocity.
     #[error(
         "the joint of `{body}` has an angular velocity, beside which no quasi-velocity is defined by `is`"
     )]
@@ -160,10 +160,10 @@ pub enum ErrorKind {
         first: &'static str,
         /// The other.
         second: &'static str,
-        /// When to use which.
+        /// A hint that says when to use which of them.
         help: &'static str,
     },
-    /// A key that should be a name and is not.
+    /// A key that should be a name but is not.
     #[error("`{key}` is not a name")]
     NotAName {
         /// The key.
@@ -181,14 +181,14 @@ pub enum ErrorKind {
         /// The name.
         name: String,
     },
-    /// One name for two things.
+    /// One name given to two things.
     #[error("`{name}` is already the name of {first} (line {line})")]
     NameTaken {
         /// The name.
         name: String,
-        /// What it named first.
+        /// What was first given this name.
         first: Role,
-        /// The line of the first.
+        /// The line of the first of them.
         line: usize,
     },
     /// A key of `brackets` that is not a pair.
@@ -203,7 +203,7 @@ pub enum ErrorKind {
         /// The name given twice.
         name: String,
     },
-    /// The same bracket twice.
+    /// The same bracket given twice.
     #[error("the bracket of `{left}` and `{right}` is given twice")]
     BracketTwice {
         /// First name.
@@ -226,7 +226,7 @@ pub enum ErrorKind {
     /// A number outside the range of its entry.
     #[error("expected {expected}, found {found}")]
     OutOfRange {
-        /// The valid values, in words.
+        /// A phrase for the valid values.
         expected: &'static str,
         /// As written.
         found: String,
@@ -243,21 +243,21 @@ pub enum ErrorKind {
         /// The one with a similar name.
         nearest: Option<&'static str>,
     },
-    /// Wrong text of an expression.
+    /// A text that is not a valid expression.
     #[error(transparent)]
     Expression(#[from] ParseError),
-    /// Text that is well formed but without a valid meaning.
+    /// A text that is well formed but has no valid meaning.
     #[error(transparent)]
     Meaning(#[from] MeaningError),
     /// Something that the program cannot do yet.
     #[error("{what} not supported yet")]
     Unsupported {
-        /// The feature, with its verb: `events are`.
+        /// The feature, with its verb, such as `events are`.
         what: &'static str,
     },
 }
 
-/// What a name in the one namespace of a model stands for.
+/// What a name stands for in the single namespace of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// An entry of `[parameters]`.
@@ -435,7 +435,8 @@ fn reserved(name: &str) -> String {
     format!("{meaning}; choose another name, such as `{name}_1`")
 }
 
-/// A form of a letter that is not used in names, with the form that is: the sign of micro is not the letter μ.
+/// A form of a letter that is not used in names, with the form to use instead: the micro sign, for example, is
+/// not the letter μ.
 fn plain_letter(form: char) -> Option<(char, char)> {
     let plain = match form {
         'ϑ' => 'θ',

@@ -4,11 +4,11 @@ use pc_mech::acts_as_zero;
 
 use crate::diagnostics::words::{against, at, listed, rounded, undetermined_text};
 
-/// A fault of the meaning; quasi-velocities stand for their operators.
+/// An error in the meaning of a model; quasi-velocities stand for their operators.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeaningError {
-    /// A name that is declared nowhere.
+    /// A name that is not declared anywhere.
     #[error("the name `{name}` is not declared")]
     UnknownName {
         /// The name.
@@ -16,13 +16,13 @@ pub enum MeaningError {
         /// The existing names.
         known: Vec<String>,
     },
-    /// A name that is declared further below.
+    /// A name that is used before it is declared.
     #[error("`{name}` is used before it is defined")]
     UsedBeforeDefined {
         /// The name.
         name: String,
     },
-    /// The velocity, kinematics or start velocity of something that is not a coordinate.
+    /// A velocity, kinematics or a start velocity given for something that is not a coordinate.
     #[error("`{name}` is not a coordinate, so `{name}'` means nothing")]
     NotACoordinate {
         /// The name.
@@ -43,28 +43,28 @@ pub enum MeaningError {
     NotReset {
         /// The name.
         name: String,
-        /// Its kind, in words.
+        /// A phrase for what it is.
         what: &'static str,
         /// The names that can be reset.
         known: Vec<String>,
     },
-    /// A name that is not allowed at this place.
+    /// A name that is not allowed where it is used.
     #[error("`{name}` cannot be used in {place}")]
     NotHere {
         /// The name as written.
         name: String,
-        /// The place, in words.
+        /// A phrase for the place where it is used.
         place: &'static str,
         /// The names that can be used.
         allowed: &'static str,
     },
-    /// d() of something that contains velocities, where accelerations are not allowed.
+    /// The rate d() of something that contains velocities, used where accelerations are not allowed.
     #[error("`d()` of velocities gives accelerations, which cannot be used in {place}")]
     Acceleration {
-        /// The place, in words.
+        /// A phrase for the place where it is used.
         place: &'static str,
     },
-    /// A quotient by zero.
+    /// A division by zero.
     #[error("`{text}` divides by zero")]
     DivisionByZero {
         /// The quotient as written.
@@ -78,7 +78,7 @@ pub enum MeaningError {
         /// `velocities` or `quasi-velocities`.
         variables: &'static str,
     },
-    /// A constraint that is not affine in the velocities and not declared so.
+    /// A constraint that is not affine in the velocities and has not been declared nonlinear.
     #[error("`{text}` is not affine in the velocities")]
     ConstraintNotAffine {
         /// Its name.
@@ -86,15 +86,15 @@ pub enum MeaningError {
         /// The expression as written.
         text: String,
     },
-    /// A constraint declared nonlinear that is not.
+    /// A constraint that is declared nonlinear but is not.
     #[error("the constraint `{constraint}` is called nonlinear and {what}")]
     NotNonlinear {
         /// Its name.
         constraint: String,
-        /// Its actual property, in words.
+        /// A phrase that says what it is instead.
         what: &'static str,
     },
-    /// A force or torque of a reaction on a body that virtual work does not determine.
+    /// A reaction force or torque on a body that virtual work does not determine.
     #[error(
         "`{name}` is not determined: the velocity of the body is tied to others by the choice of coordinates"
     )]
@@ -108,27 +108,27 @@ pub enum MeaningError {
         /// The definition as written.
         text: String,
     },
-    /// A quasi-velocity that is given twice in addition to the text.
+    /// A name given to two of the quasi-velocities requested in addition to the text.
     #[error("`{name}` is given twice")]
     GivenTwice {
         /// Its name.
         name: String,
     },
-    /// A quasi-velocity given in addition to the text that is not a linear form in the velocities.
+    /// A quasi-velocity, requested in addition to the text, that is not a linear form in the velocities.
     #[error("`{text}` is not linear in the velocities")]
     NotLinear {
         /// The definition as written.
         text: String,
     },
-    /// A form of the equations that the model does not have.
+    /// A form of the equations that does not exist for the model.
     #[error("{message}")]
     NoForm {
         /// Why.
         message: String,
-        /// The forms that it has.
+        /// The forms that exist for it.
         help: &'static str,
     },
-    /// A coordinate without kinematics, though others have them.
+    /// A coordinate without kinematics, although other coordinates have them.
     #[error("[kinematics] does not say what `{coordinate}'` is")]
     KinematicsMissing {
         /// The coordinate.
@@ -140,13 +140,13 @@ pub enum MeaningError {
         /// The quasi-velocity.
         name: String,
     },
-    /// Kinematics given in two ways.
+    /// Kinematics that are given in two ways.
     #[error("the quasi-velocity `{name}` is defined by `is`, and [kinematics] is given too")]
     TwoKinematics {
         /// The quasi-velocity.
         name: String,
     },
-    /// A number of definitions that is not the number of coordinates.
+    /// A number of definitions that differs from the number of coordinates.
     #[error("{definitions} definitions of quasi-velocities cannot be solved for {coordinates} velocities")]
     DefinitionCount {
         /// Number of definitions.
@@ -154,7 +154,7 @@ pub enum MeaningError {
         /// Number of coordinates.
         coordinates: usize,
     },
-    /// Definitions that are dependent.
+    /// Definitions that are linearly dependent.
     #[error(
         "the definitions of the quasi-velocities are linearly dependent: their matrix is singular everywhere"
     )]
@@ -168,7 +168,7 @@ pub enum MeaningError {
         /// The velocities.
         velocities: Vec<String>,
     },
-    /// A start velocity of a coordinate that quasi-velocities contradict.
+    /// A start velocity of a coordinate that contradicts the quasi-velocities.
     #[error(
         "the start velocity `{coordinate}'` = {} contradicts the quasi-velocities: by their start it is {}",
         rounded(*given),
@@ -179,25 +179,25 @@ pub enum MeaningError {
         coordinate: String,
         /// The velocity given.
         given: f64,
-        /// Its value according to the others.
+        /// Its value as determined by the others.
         found: f64,
     },
-    /// Components of the start that are to be kept but have to move for a constraint.
+    /// Components of the start that are to stay fixed but would have to move to satisfy a constraint.
     #[error("with {} kept, nothing is left to move to the constraint `{constraint}`", listed(held))]
     StartHeld {
         /// The constraint.
         constraint: String,
-        /// The components that are kept.
+        /// The components that stay fixed.
         held: Vec<String>,
     },
-    /// A constraint declared holonomic that is not.
+    /// A constraint that is declared holonomic but is not.
     #[error(
         "the constraint `{constraint}` is not holonomic: the velocities it allows leave every surface (component {residual:.1e})"
     )]
     NotHolonomic {
         /// Its name.
         constraint: String,
-        /// The largest component along it of the commutators of the velocities allowed.
+        /// The largest component, along the constraint, of the commutators of the allowed velocities.
         residual: f64,
     },
     /// A start that does not satisfy a constraint.
@@ -210,17 +210,17 @@ pub enum MeaningError {
         /// Its value at the start.
         residual: f64,
     },
-    /// A constraint that others keep at another value.
+    /// A constraint that other constraints keep at a value other than zero.
     #[error("the constraint `{constraint}` {}{}, not 0", against(others), rounded(*residual))]
     Contradictory {
         /// Its name.
         constraint: String,
-        /// The constraints that keep it constant; none if it is constant by itself.
+        /// The constraints that keep it constant; empty if it is constant by itself.
         others: Vec<String>,
         /// Its value.
         residual: f64,
     },
-    /// A constraint that cannot be kept.
+    /// A constraint that cannot be satisfied.
     #[error("{message}")]
     Constraint {
         /// Why.
@@ -228,7 +228,7 @@ pub enum MeaningError {
         /// A correction.
         help: &'static str,
     },
-    /// A catalogue name that does not exist.
+    /// A name that is not in the catalogue of algebras.
     #[error("there is no algebra named `{name}`")]
     UnknownAlgebra {
         /// The name.
@@ -236,7 +236,7 @@ pub enum MeaningError {
         /// The existing names.
         known: Vec<&'static str>,
     },
-    /// An algebra whose dimension is not the number of quasi-velocities.
+    /// An algebra whose dimension differs from the number of quasi-velocities.
     #[error("the algebra `{name}` has dimension {dimension}, but there are {operators} quasi-velocities")]
     AlgebraDimension {
         /// The name.
@@ -252,12 +252,12 @@ pub enum MeaningError {
         /// The value as written.
         text: String,
     },
-    /// Two brackets of one pair that are not opposite.
+    /// Two brackets of the same pair, in opposite orders, that are not opposite to each other.
     #[error("the brackets \"{left},{right}\" and \"{right},{left}\" are not opposite")]
     BracketsNotSkew {
-        /// First name of the later one.
+        /// The first name in the later bracket.
         left: String,
-        /// Second name of the later one.
+        /// The second name in the later bracket.
         right: String,
     },
     /// Brackets that violate the Jacobi identity.
@@ -270,7 +270,7 @@ pub enum MeaningError {
         /// Its size.
         defect: String,
     },
-    /// Equations without coordinates and without an algebra.
+    /// A model that has neither coordinates nor an algebra.
     #[error("without coordinates the brackets of the quasi-velocities are not determined")]
     AlgebraNeeded,
     /// A frame that does not determine its brackets.
@@ -285,13 +285,14 @@ pub enum MeaningError {
         /// The pair.
         pair: [String; 2],
     },
-    /// A frame with a vanishing combination, so that it does not determine brackets along that combination.
+    /// A frame whose operators have a vanishing linear combination, so that it does not determine brackets
+    /// along that combination.
     #[error(
         "the frame does not determine the brackets of the quasi-velocities: {}",
         acts_as_zero(combination, |s| names[s - 1].clone())
     )]
     Undetermined {
-        /// The combination: numbers of quasi-velocities, from 1, with their coefficients.
+        /// The combination: the numbers of the quasi-velocities, counted from 1, with their coefficients.
         combination: Vec<(usize, String)>,
         /// The names of all quasi-velocities.
         names: Vec<String>,
@@ -307,7 +308,7 @@ pub enum MeaningError {
         /// Relative residual.
         residual: f64,
     },
-    /// Brackets that are not those of the frame.
+    /// Given brackets that differ from those of the frame.
     #[error(
         "the bracket of {} and {} given in [algebra] contradicts the kinematics (relative residual {residual:.1e})",
         pair[0], pair[1]
@@ -332,10 +333,10 @@ pub enum MeaningError {
         /// The quasi-velocities without an equation.
         undetermined: Vec<String>,
     },
-    /// An energy, a frame or a constraint that jumps.
+    /// An energy, a frame or a constraint that is discontinuous.
     #[error("{message}")]
     Jumps {
-        /// What jumps, and where.
+        /// A text that says what is discontinuous, and where.
         message: String,
     },
     /// An axis without direction.
@@ -349,7 +350,7 @@ pub enum MeaningError {
         /// The determinant.
         determinant: f64,
     },
-    /// The matrix of a body in redundant coordinates, at the start.
+    /// A matrix of a body, in redundant coordinates, that is not a rotation at the start.
     #[error(
         "the matrix of `{body}` is not a rotation at the start: its columns are not orthogonal and of one length, by {}",
         rounded(*defect)
@@ -360,7 +361,7 @@ pub enum MeaningError {
         /// The deviation of RᵀR from a multiple of the unit matrix.
         defect: f64,
     },
-    /// The same along the motion.
+    /// A matrix of a body, in redundant coordinates, that does not stay a rotation along the motion.
     #[error(
         "the matrix of `{body}` does not stay a rotation: along the motion its columns do not stay orthogonal and of one length \
          (rate {})",
@@ -373,7 +374,7 @@ pub enum MeaningError {
         /// matrix.
         defect: f64,
     },
-    /// The quaternion of a joint at the start.
+    /// A quaternion of a joint whose length at the start is not 1.
     #[error("the quaternion of `{body}` has length {length} at the start, not 1")]
     QuaternionNotUnit {
         /// The body.
@@ -381,13 +382,13 @@ pub enum MeaningError {
         /// Its length.
         length: f64,
     },
-    /// A body without mass that moves by itself.
+    /// A body that can move although neither it nor any body attached to it has mass.
     #[error("`{body}` can move, and neither it nor what hangs on it has mass or inertia")]
     Massless {
         /// The body.
         body: String,
     },
-    /// A turn that no inertia resists.
+    /// A rotation that no inertia resists.
     #[error("nothing that the {kind} joint of `{body}` turns has inertia about {direction}")]
     NoInertia {
         /// The body.
@@ -397,7 +398,7 @@ pub enum MeaningError {
         /// The axis.
         direction: String,
     },
-    /// A slide that no mass resists.
+    /// A translation that no mass resists.
     #[error("nothing that the {kind} joint of `{body}` moves along {direction} has mass")]
     NoMass {
         /// The body.
@@ -407,7 +408,7 @@ pub enum MeaningError {
         /// The axis.
         direction: String,
     },
-    /// A parameter that is an expression without a value.
+    /// A parameter given by an expression that has no finite value.
     #[error("`{text}` is {value}")]
     ParameterNotFinite {
         /// The expression as written.
@@ -423,7 +424,7 @@ pub enum MeaningError {
         /// A correction.
         help: &'static str,
     },
-    /// d() of an input, an acceleration or a reaction.
+    /// The rate d() of an input, an acceleration or a reaction.
     #[error("the rate of the {what} `{name}` is not known")]
     UnknownRate {
         /// Which of these it is.
@@ -431,7 +432,7 @@ pub enum MeaningError {
         /// Its name.
         name: String,
     },
-    /// A value that is not a number at the start.
+    /// An expression that has no finite value at the start.
     #[error("`{text}` is {value} at the start{}", at(state))]
     NotFinite {
         /// The expression as written.
@@ -441,12 +442,12 @@ pub enum MeaningError {
         /// Names and values of the start state.
         state: Vec<(String, f64)>,
     },
-    /// Equations that cannot be evaluated at the start, though the expressions of the text can.
+    /// Equations that cannot be evaluated at the start, although the expressions of the text can.
     #[error("the equations of motion cannot be evaluated at the start: {cause}")]
     SingularStart {
         /// Why.
         cause: String,
-        /// Whether a velocity moves no mass there.
+        /// Whether there is a velocity at the start that moves no mass.
         is_massless: bool,
     },
     /// A tolerance for something that is not a component of the state.
@@ -454,10 +455,10 @@ pub enum MeaningError {
     UnknownComponent {
         /// The name.
         name: String,
-        /// Coordinates, quasi-velocities or velocities, and first-order states.
+        /// The coordinates, the quasi-velocities or velocities, and the first-order states.
         known: Vec<String>,
     },
-    /// An integral to be kept that the model does not have.
+    /// A name that was requested as an integral to be kept but is not an integral of the model.
     #[error("`{name}` is not an integral")]
     UnknownIntegral {
         /// The name.
@@ -465,17 +466,17 @@ pub enum MeaningError {
         /// The existing integrals.
         known: Vec<String>,
     },
-    /// A function to be kept that is not an integral.
+    /// A function that was requested to be kept but is not constant along the motion.
     #[error("`{name}` cannot be kept: it changes along the motion, at t = {} at the rate {}", rounded(*t), rounded(*rate))]
     NotAnIntegral {
         /// The integral.
         name: String,
-        /// The time at which it was seen to change.
+        /// The time at which it was found to change.
         t: f64,
         /// Its rate of change.
         rate: f64,
     },
-    /// Any other refusal by the derivation.
+    /// Any other error of the derivation.
     #[error("{message}")]
     Derivation {
         /// Why.

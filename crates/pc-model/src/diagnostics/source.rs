@@ -1,4 +1,4 @@
-//! The text of a model file, and the display of a place in it.
+//! The text of a model file, and how a place in it is displayed.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use std::ops::Range;
 pub struct Source {
     name: String,
     text: String,
-    /// The place of the first byte that is not UTF-8, and that byte.
+    /// The offset of the first byte that is not UTF-8, and that byte.
     damage: Option<(usize, u8)>,
 }
 
@@ -20,21 +20,22 @@ pub struct Position {
     pub column: usize,
 }
 
-/// A place in a model file: bytes `span`, and the entry they belong to, as `[lagrangian] kinetic`.
+/// A place in a model file: the bytes `span`, and the entry to which they belong, such as `[lagrangian]
+/// kinetic`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place {
-    /// Section and entry; empty where there is none.
+    /// Section and entry; empty if there is none.
     pub entry: String,
     /// Bytes in the file.
     pub span: Range<usize>,
 }
 
-/// Characters of a long line shown before and after the start of the marked text.
+/// The number of characters of a long line that are shown before and after the start of the marked text.
 const BEFORE: usize = 60;
 const AFTER: usize = 100;
 
 impl Source {
-    /// A model file that is text already.
+    /// A model file whose contents are already text.
     pub fn new(name: impl Into<String>, text: impl Into<String>) -> Self {
         Self { name: name.into(), text: text.into(), damage: None }
     }
@@ -63,12 +64,12 @@ impl Source {
         self.damage
     }
 
-    /// The text of a byte range; empty where the range is not in the text.
+    /// The text of a byte range; empty if the range is not in the text.
     pub fn slice(&self, span: Range<usize>) -> &str {
         self.text.get(span).unwrap_or_default()
     }
 
-    /// Line and column of a byte offset; an offset past the end is the end.
+    /// Line and column of a byte offset; an offset past the end counts as the end.
     pub fn position(&self, offset: usize) -> Position {
         let offset = self.text.floor_char_boundary(offset);
         let before = &self.text[..offset];
@@ -77,7 +78,7 @@ impl Source {
         Position { line, column: before[start..].chars().count() + 1 }
     }
 
-    /// The line on which `span` begins, with carets below the part that `span` covers.
+    /// The line on which `span` begins, with carets below the part covered by `span`.
     pub(crate) fn excerpt(&self, span: Range<usize>) -> String {
         let start = self.text.floor_char_boundary(span.start);
         let line_start = self.text[..start].rfind('\n').map_or(0, |newline| newline + 1);
@@ -102,7 +103,7 @@ fn visible(c: char) -> char {
     if c.is_control() && c != '\t' { char::REPLACEMENT_CHARACTER } else { c }
 }
 
-/// White space as wide as the character.
+/// White space that is as wide as the character.
 fn blank(c: char) -> &'static str {
     match (c, width(c)) {
         ('\t', _) => "\t",
@@ -112,7 +113,7 @@ fn blank(c: char) -> &'static str {
     }
 }
 
-/// Columns that the character takes in a terminal.
+/// The number of columns that the character takes up in a terminal.
 fn width(c: char) -> usize {
     match c {
         '\u{300}'..='\u{36f}' | '\u{200b}'..='\u{200f}' | '\u{fe00}'..='\u{fe0f}' | '\u{feff}' => 0,

@@ -1,4 +1,4 @@
-//! Parts of the messages.
+//! Parts of which messages are made.
 
 use pc_expr::parse::nearest;
 use pc_expr::readable;

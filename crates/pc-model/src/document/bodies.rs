@@ -1,4 +1,4 @@
-//! The sections of rigid bodies and mass points, and of their gravity.
+//! The sections of rigid bodies and mass points, and of gravity.
 
 use super::reader::{Item, Table};
 use crate::diagnostics::error::ModelError;

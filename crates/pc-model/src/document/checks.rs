@@ -1,4 +1,5 @@
-//! Conditions between the sections: each name has one meaning, something moves, and there is an energy.
+//! Conditions that involve several sections: each name has one meaning, something moves, and there is an
+//! energy.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -44,7 +45,7 @@ pub(super) fn require_motion(document: &Document) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Checks that tolerances belong to components of the state.
+/// Checks that absolute tolerances are given only for components of the state.
 pub(super) fn check_tolerances(document: &Document) -> Result<(), ModelError> {
     let Some(given) = &document.simulation.atol else { return Ok(()) };
     let known = document.start_names();
@@ -58,7 +59,7 @@ pub(super) fn check_tolerances(document: &Document) -> Result<(), ModelError> {
 }
 
 impl Document {
-    /// The names that have a start value: coordinates, quasi-velocities, or velocities x' where none is declared, and
+    /// The names that have a start value: coordinates, quasi-velocities (or velocities x' if none is declared), and
     /// first-order states.
     pub(crate) fn start_names(&self) -> Vec<String> {
         let coordinates = self.coordinates.iter().map(|x| x.name.text.clone());
@@ -71,7 +72,7 @@ impl Document {
         names
     }
 
-    /// The names of the one namespace, each with its role.
+    /// The names in the single namespace of the model, each with its role.
     pub(crate) fn declared_names(&self) -> Vec<(&Name, Role)> {
         let quasi = self.quasi_velocities.iter().map(|quasi| (&quasi.name, Role::QuasiVelocity));
         let inputs = self.inputs.iter().map(|input| (&input.name, Role::Input));

@@ -1,4 +1,5 @@
-//! The text of a model as a typed document: every entry with its place, names not yet resolved.
+//! The text of a model as a typed document: every entry has its place in the file, and names are not yet
+//! resolved.
 
 use pc_expr::Direction;
 use pc_mech::Interpolation;
@@ -17,38 +18,39 @@ pub struct Document {
     pub source: Source,
     /// `[model]`
     pub model: Heading,
-    /// `[parameters]`, which stay adjustable, each with its number, or an expression in those before it.
+    /// `[parameters]`, which stay adjustable, each with its number or an expression in the preceding ones.
     pub parameters: Vec<NamedExpression>,
     /// `[inputs]`
     pub inputs: Vec<Input>,
     /// `[definitions]`
     pub definitions: Vec<NamedExpression>,
-    /// Coordinates, each with its start value: those of joints, then the others of `[coordinates]`.
+    /// Coordinates, each with its start value: those of joints, then the others, from `[coordinates]`.
     pub coordinates: Vec<NamedExpression>,
-    /// Quasi-velocities: those of joints unless all velocities are `x'`, then the others of
-    /// `[quasi_velocities]` except entries `"x'"`.
+    /// Quasi-velocities: those of joints, unless all velocities are `x'`, then the others, from
+    /// `[quasi_velocities]`, without its entries `"x'"`.
     pub quasi_velocities: Vec<QuasiVelocity>,
-    /// Entries `"x'" = value` of `[quasi_velocities]`: start velocities by the names of coordinates, without prime.
+    /// The entries `"x'" = value` of `[quasi_velocities]`: start velocities under the names of their coordinates,
+    /// without the prime.
     pub start_velocities: Vec<NamedExpression>,
     /// `[states]`
     pub states: Vec<State>,
-    /// `[kinematics]`: x_i' by the names of coordinates.
+    /// `[kinematics]`: the expressions of x_i', under the names of the coordinates.
     pub kinematics: Vec<NamedExpression>,
     /// `[algebra]`
     pub algebra: Option<Algebra>,
-    /// `[constraints]`, then those that close `[loops.NAME]`.
+    /// `[constraints]`, then the constraints that close `[loops.NAME]`.
     pub constraints: Vec<Constraint>,
-    /// `[lagrangian]`; given unless there are bodies.
+    /// `[lagrangian]`; it is always given if there are no bodies.
     pub lagrangian: Option<Lagrangian>,
     /// `[bodies.NAME]` with a position.
     pub bodies: Vec<Body>,
     /// `[bodies.NAME]` with a joint.
     pub tree: Vec<TreeBody>,
-    /// `[points.NAME]`, then the points where `[loops.NAME]` are closed.
+    /// `[points.NAME]`, then the points at which `[loops.NAME]` are closed.
     pub points: Vec<Point>,
     /// `[gravity]`
     pub gravity: Option<Gravity>,
-    /// `[forces]`, by the names of quasi-velocities or coordinates.
+    /// `[forces]`, under the names of the quasi-velocities or coordinates on which they act.
     pub forces: Vec<NamedExpression>,
     /// `[integrals]`
     pub integrals: Vec<NamedExpression>,
@@ -64,10 +66,10 @@ pub struct Document {
     pub simulation: Simulation,
 }
 
-/// Title of a model.
+/// The title of a model.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Heading {
-    /// Name of the system.
+    /// The name of the system.
     pub name: Option<Located<String>>,
     /// The description of the system.
     pub description: Option<Located<String>>,
@@ -75,7 +77,7 @@ pub struct Heading {
     pub reference: Option<Located<String>>,
 }
 
-/// A value that a program or a table gives the system.
+/// A value that the system is given by a program or a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
     /// Its name.
@@ -89,7 +91,7 @@ pub struct Input {
 pub enum InputValue {
     /// A number, or an expression in parameters: constant until it is set.
     Constant(Expression),
-    /// Values at times.
+    /// A list of times and the values at these times.
     Lists {
         /// Their place.
         place: Place,
@@ -111,18 +113,18 @@ pub struct TableFile {
     pub file: Located<String>,
     /// The column of the values.
     pub column: Located<String>,
-    /// The column of the times; if left out, `t` or else the first one.
+    /// The column of the times; if left out, the column `t` or else the first one.
     pub time: Option<Located<String>>,
     /// The interpolation between the times.
     pub interpolation: Interpolation,
 }
 
-/// η_s: at least one of `is` and `start` is given.
+/// A quasi-velocity η_s: at least one of `is` and `start` is given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct QuasiVelocity {
     /// Its name.
     pub name: Name,
-    /// Its definition by the velocities of the coordinates.
+    /// Its definition in terms of the velocities of the coordinates.
     pub is: Option<Expression>,
     /// Its start value; 0 if it is left out.
     pub start: Option<Expression>,
@@ -148,7 +150,7 @@ pub struct Algebra {
     pub definition: AlgebraDefinition,
 }
 
-/// The two ways to give an algebra.
+/// The two ways in which an algebra can be given.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AlgebraDefinition {
     /// By its name in the catalogue.
@@ -157,7 +159,8 @@ pub enum AlgebraDefinition {
     Brackets(Vec<Bracket>),
 }
 
-/// [X_left, X_right] = value; one of the names may be `t`. No pair is given twice in the same order.
+/// A given bracket [X_left, X_right] = value; one of the names may be `t`. No pair is given twice in the same
+/// order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bracket {
     /// First field.
@@ -168,7 +171,7 @@ pub struct Bracket {
     pub value: Expression,
 }
 
-/// An expression that stays zero.
+/// A constraint: an expression that is required to stay zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Constraint {
     /// Its label, outside the namespace of the model.
@@ -190,8 +193,8 @@ pub enum DeclaredKind {
     Nonlinear,
 }
 
-/// The energy. `lagrangian` excludes `kinetic` and `potential`; one of `lagrangian` and `kinetic` is given unless
-/// there are bodies.
+/// The energy. `lagrangian` excludes `kinetic` and `potential`; if there are no bodies, either `lagrangian` or
+/// `kinetic` is given.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lagrangian {
     /// The section's header.
@@ -215,31 +218,31 @@ pub struct Body {
     pub place: Place,
     /// Its mass.
     pub mass: Expression,
-    /// Position of the mass centre, or of a point of the body that is at rest.
+    /// The position of the mass centre, or of a point of the body that is at rest.
     pub position: [Expression; 3],
-    /// Inertia about `position`; given only with an orientation.
+    /// The inertia about `position`; given only with an orientation.
     pub inertia: Option<Inertia>,
     /// Its orientation.
     pub orientation: Option<Orientation>,
-    /// Force acting at `position`.
+    /// The force that acts at `position`.
     pub force: Option<[Expression; 3]>,
-    /// Torque, in the axes of the angular velocity; given only with an orientation.
+    /// The torque, in components along the axes of the angular velocity; given only with an orientation.
     pub torque: Option<[Expression; 3]>,
 }
 
-/// A uniform field of gravity, which acts on the mass centres of all bodies.
+/// A uniform gravitational field, which acts on the mass centres of all bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gravity {
     /// The section's header.
     pub place: Place,
-    /// The acceleration of free fall, along the axes of the positions.
+    /// The acceleration of free fall, in components along the axes of the positions.
     pub acceleration: [Expression; 3],
 }
 
 /// The orientation of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Orientation {
-    /// The rows of R, from body to space.
+    /// The rows of the rotation matrix R from body axes to fixed axes.
     Rotation(Box<[Expression; 9]>),
     /// The components of the angular velocity.
     AngularVelocity(Box<[Expression; 3]>),
@@ -248,13 +251,13 @@ pub enum Orientation {
 /// A solution of Hamilton–Jacobi's equation, as claimed by the user.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HamiltonJacobi {
-    /// S, a function of time, coordinates and constants.
+    /// The function S of time, coordinates and constants.
     pub action: Expression,
     /// Its constants, each with a value near which S is defined.
     pub constants: Vec<(Name, Located<f64>)>,
 }
 
-/// An event where an expression passes through zero.
+/// An event, which occurs where an expression passes through zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
     /// Its label, outside the namespace of the model.
@@ -263,16 +266,16 @@ pub struct Event {
     pub place: Place,
     /// The expression that passes through zero.
     pub when: Expression,
-    /// The direction in which it does.
+    /// The direction in which it passes through zero.
     pub direction: Option<Located<Direction>>,
     /// Whether the run ends there.
     pub terminal: Option<Located<bool>>,
-    /// New values; a velocity keeps its prime in the name.
+    /// The new values after the event; the name of a velocity keeps its prime.
     pub reset: Vec<NamedExpression>,
 }
 
 impl Document {
-    /// The end of the file, where missing entries could be added.
+    /// The place at the end of the file, where missing entries could be added.
     pub fn end(&self) -> Place {
         let end = self.source.text().trim_end().len();
         Place { entry: String::new(), span: end..end }

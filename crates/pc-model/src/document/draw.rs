@@ -15,15 +15,15 @@ pub struct Draw {
     pub shape: DrawnShape,
 }
 
-/// A place, given by two or three expressions.
+/// A position, given by two or three expressions.
 pub type DrawnPlace = Vec<Expression>;
 
-/// A shape, given by expressions.
+/// A shape, described by expressions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DrawnShape {
-    /// A dot whose size does not depend on the distance.
+    /// A dot whose size does not depend on its distance from the viewer.
     Point {
-        /// Its place.
+        /// Its position.
         at: DrawnPlace,
     },
     /// A broken line.
@@ -33,7 +33,7 @@ pub enum DrawnShape {
     },
     /// A disc.
     Disc {
-        /// Its middle.
+        /// Its centre.
         at: DrawnPlace,
         /// A vector perpendicular to it.
         normal: Option<DrawnPlace>,
@@ -42,18 +42,18 @@ pub enum DrawnShape {
     },
     /// A sphere.
     Sphere {
-        /// Its middle.
+        /// Its centre.
         at: DrawnPlace,
         /// Its radius.
         radius: Expression,
     },
     /// A box.
     Box {
-        /// Its middle.
+        /// Its centre.
         at: DrawnPlace,
         /// The lengths of its edges.
         size: DrawnPlace,
-        /// The rows of R, from its axes to those of space.
+        /// The rows of the rotation matrix R from its axes to the fixed axes.
         rotation: Option<Box<[Expression; 9]>>,
     },
     /// A spring.
@@ -63,14 +63,14 @@ pub enum DrawnShape {
         /// The other.
         to: DrawnPlace,
     },
-    /// The path that a point has left behind.
+    /// The path that a point has traced so far.
     Trace {
         /// The point.
         at: DrawnPlace,
     },
     /// Words.
     Text {
-        /// The place where they begin.
+        /// The position where they begin.
         at: DrawnPlace,
         /// The words.
         text: Located<String>,
@@ -88,7 +88,7 @@ const KINDS: &[(&str, Keys)] = &[
     ("text", Keys(&["kind", "at", "text"])),
 ];
 
-/// The entries allowed for a kind.
+/// The entries allowed for a kind of shape.
 #[derive(Clone, Copy)]
 struct Keys(&'static [&'static str]);
 
@@ -145,7 +145,7 @@ fn entry(item: &Item<'_>) -> Result<Draw, ModelError> {
     Ok(Draw { place: table.place.clone(), shape })
 }
 
-/// The possible numbers of corners of a line.
+/// The numbers of corners that a line may have.
 const LINES: &[usize] = &{
     let mut lengths = [0; 63];
     let mut i = 0;
@@ -156,7 +156,7 @@ const LINES: &[usize] = &{
     lengths
 };
 
-/// A place: two expressions in a plane, three in space.
+/// A position: two expressions in a plane, three in space.
 fn place(item: &Item<'_>) -> Result<DrawnPlace, ModelError> {
     item.list(&[2, 3], "2 or 3 expressions", AT)
 }

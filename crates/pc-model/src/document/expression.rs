@@ -17,7 +17,7 @@ pub struct Located<T> {
     pub place: Place,
 }
 
-/// A name and its place in the file, quotes excluded.
+/// A name and its place in the file, without quotes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Name {
     /// The name.
@@ -29,19 +29,19 @@ pub struct Name {
 /// An expression and its place in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
-    /// As written, escapes of the TOML string resolved.
+    /// The text as written, with the escapes of the TOML string resolved.
     pub text: String,
-    /// Its tree, with spans in `text`.
+    /// Its syntax tree, with spans in `text`.
     pub ast: Ast,
     pub(super) entry: String,
     pub(super) map: TextMap,
 }
 
 impl Expression {
-    /// The expression that a whole text consists of.
+    /// The expression given by the whole text of a source.
     ///
     /// # Errors
-    /// [`ModelError`] if it is not one.
+    /// [`ModelError`] if the text is not an expression.
     pub(crate) fn of(source: &Source) -> Result<Expression, ModelError> {
         let text = source.text();
         let ast = parse(text).map_err(|error| {
@@ -51,24 +51,24 @@ impl Expression {
         Ok(Expression { text: text.to_owned(), ast, entry: String::new(), map: TextMap::verbatim(text) })
     }
 
-    /// An expression that is not written, but implied by the text at a place.
+    /// An expression that is not written but implied by the text at a place in the file.
     pub(super) fn following(source: &Source, text: String, place: &Place) -> Result<Expression, ModelError> {
         let ast = parse(&text).map_err(|error| source.error(place, error))?;
         let map = TextMap::standing_for(place.span.clone(), text.len());
         Ok(Expression { text, ast, entry: place.entry.clone(), map })
     }
 
-    /// Bytes of a part of the expression in the file.
+    /// The bytes in the file of a part of the expression.
     pub fn locate(&self, span: Span) -> Range<usize> {
         self.map.locate(span.start..span.end)
     }
 
-    /// The place of a part of the expression.
+    /// The place in the file of a part of the expression.
     pub fn place(&self, span: Span) -> Place {
         Place { entry: self.entry.clone(), span: self.locate(span) }
     }
 
-    /// The place of the whole expression.
+    /// The place in the file of the whole expression.
     pub fn whole(&self) -> Place {
         self.place(Span { start: 0, end: self.text.len() })
     }
@@ -77,8 +77,8 @@ impl Expression {
 /// `name = "expression"`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedExpression {
-    /// The left side.
+    /// The left-hand side.
     pub name: Name,
-    /// The right side.
+    /// The right-hand side.
     pub expression: Expression,
 }

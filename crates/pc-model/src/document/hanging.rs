@@ -1,4 +1,5 @@
-//! The coordinates and quasi-velocities that joints declare among those of the model, and checks of the tree.
+//! The coordinates and quasi-velocities that joints add to those of the model, and checks of the tree of
+//! bodies.
 
 use std::collections::{HashMap, HashSet};
 
@@ -12,10 +13,10 @@ use crate::document::expression::{Expression, Located, Name, NamedExpression};
 use crate::document::joints::{TreeBody, WORLD, prime};
 use crate::document::loops::Loop;
 
-/// Adds the declarations of joints and loops to the document.
+/// Adds what joints and loops declare to the document.
 ///
 /// # Errors
-/// If a body hangs on one that does not exist, or the motion of a joint is also given elsewhere.
+/// If a body is attached to one that does not exist, or the motion of a joint is also given elsewhere.
 pub(super) fn declare(document: &mut Document, loops: Vec<Loop>) -> Result<(), ModelError> {
     check_parents(document)?;
     check_masses(document)?;
@@ -29,7 +30,7 @@ pub(super) fn declare(document: &mut Document, loops: Vec<Loop>) -> Result<(), M
     declared
 }
 
-/// Checks that a body is one of the tree, or the world.
+/// Checks that a body belongs to the tree, or is the world.
 fn check_body(document: &Document, body: &Located<String>) -> Result<(), ModelError> {
     if body.value == WORLD || document.tree.iter().any(|known| known.name.text == body.value) {
         return Ok(());
@@ -39,7 +40,8 @@ fn check_body(document: &Document, body: &Located<String>) -> Result<(), ModelEr
     Err(document.source.error(&body.place, kind))
 }
 
-/// Checks that each body hangs on an existing one, and all of them ultimately on the world.
+/// Checks that each body is attached to an existing one, and that every body is ultimately attached to the
+/// world.
 fn check_parents(document: &Document) -> Result<(), ModelError> {
     for parent in document.tree.iter().filter_map(|body| body.parent.as_ref()) {
         check_body(document, parent)?;
@@ -66,7 +68,7 @@ fn check_parents(document: &Document) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Checks that a moving body, or one that hangs on it, has mass, unless `[lagrangian]` gives more energy.
+/// Checks that each moving body, or one attached to it, has mass, unless `[lagrangian]` adds energy.
 fn check_masses(document: &Document) -> Result<(), ModelError> {
     if document.lagrangian.as_ref().is_some_and(|own| own.kinetic.is_some() || own.lagrangian.is_some()) {
         return Ok(());
@@ -93,7 +95,7 @@ fn check_masses(document: &Document) -> Result<(), ModelError> {
     }
 }
 
-/// The points and constraints of loops.
+/// Adds the points and constraints of loops to the document.
 fn close(document: &mut Document, loops: Vec<Loop>) -> Result<(), ModelError> {
     for Loop { name, points, constraints } in loops {
         document.points.extend(points);
@@ -111,7 +113,7 @@ fn close(document: &mut Document, loops: Vec<Loop>) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// The body whose joint has this coordinate.
+/// The body, if any, whose joint has this coordinate.
 fn of_joint<'d>(tree: &'d [TreeBody], coordinate: &str) -> Option<&'d TreeBody> {
     tree.iter().find(|body| body.joint.coordinates.iter().any(|x| x.text == coordinate))
 }

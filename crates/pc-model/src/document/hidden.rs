@@ -1,6 +1,6 @@
-//! Invisible characters with an effect.
+//! Invisible characters that have an effect.
 
-/// Control characters, ends of lines and paragraphs, changes of the direction of writing, byte-order marks, and
+/// Control characters, ends of lines and paragraphs, changes of writing direction, byte-order marks, and
 /// characters that no text may contain (XML 1.0, 2.2).
 pub fn is_hidden(c: char) -> bool {
     c.is_control()

@@ -1,65 +1,67 @@
-//! Bodies that hang on others by joints, as written.
+//! Bodies attached to others by joints, as written.
 
 use crate::diagnostics::source::Place;
 use crate::document::expression::{Expression, Located, Name};
 use crate::document::inertia::Inertia;
 
-/// The name of the fixed axes in place of a body.
+/// The name that stands for the fixed axes where a body is expected.
 pub const WORLD: &str = "world";
 
-/// A body that hangs on another, or on the world, by a joint.
+/// A body attached to another, or to the world, by a joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TreeBody {
     /// Its label, outside the namespace of the model.
     pub name: Name,
     /// The section's header.
     pub place: Place,
-    /// The body it hangs on; the world if left out.
+    /// The body to which it is attached; the world if left out.
     pub parent: Option<Located<String>>,
-    /// The joint by which it hangs there.
+    /// The joint by which it is attached.
     pub joint: Joint,
     /// Its mass; 0 if left out.
     pub mass: Option<Expression>,
-    /// The mass centre in body axes, from the joint; the joint itself if left out.
+    /// The position of the mass centre relative to the joint, in body axes; the joint itself if left out.
     pub center: Option<[Expression; 3]>,
-    /// Inertia about the mass centre, in body axes.
+    /// The inertia about the mass centre, in body axes.
     pub inertia: Option<Inertia>,
-    /// Force at the mass centre, along fixed axes.
+    /// The force at the mass centre, in components along fixed axes.
     pub force: Option<[Expression; 3]>,
-    /// Torque along body axes.
+    /// The torque, in components along body axes.
     pub torque: Option<[Expression; 3]>,
 }
 
 impl TreeBody {
-    /// The body it hangs on, none for the world.
+    /// The body to which it is attached; none for the world.
     pub fn parent(&self) -> Option<&str> {
         self.parent.as_ref().map(|parent| parent.value.as_str()).filter(|parent| *parent != WORLD)
     }
 }
 
-/// A joint: how a body moves relative to the one on which it hangs.
+/// A joint: how a body moves relative to the one to which it is attached.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
     /// Its place in the file.
     pub place: Place,
     /// Its kind.
     pub kind: JointKind,
-    /// The directions that its kind has, in the joint's axes; of any length but 0.
+    /// The directions that this kind of joint has, in the joint's axes; vectors of any length but 0.
     pub axes: Vec<[f64; 3]>,
-    /// The advance of a screw per radian.
+    /// The advance of a screw joint per radian.
     pub pitch: Option<Expression>,
-    /// Its place, in the axes of the body it hangs on, from that body's origin; the origin if left out.
+    /// Its position in the axes of the body to which its body is attached, relative to that body's origin;
+    /// the origin if left out.
     pub at: Option<[Expression; 3]>,
-    /// From the joint's axes to those of the body it hangs on; none if they are parallel.
+    /// The rotation from the joint's axes to those of the body to which its body is attached; none if they
+    /// are parallel.
     pub rotation: Option<JointRotation>,
     /// The names of its coordinates.
     pub coordinates: Vec<Name>,
-    /// The names of its quasi-velocities, `x'` being the velocity of the coordinate `x`.
+    /// The names of its quasi-velocities, where `x'` is the velocity of the coordinate `x`.
     pub quasi_velocities: Vec<Name>,
 }
 
 impl Joint {
-    /// Whether each quasi-velocity is the velocity of the coordinate at its place.
+    /// Whether each quasi-velocity is the velocity of the coordinate at the same position in its list.
     pub fn is_plain(&self) -> bool {
         self.kind.is_of_velocities()
             && self.coordinates.iter().zip(&self.quasi_velocities).all(|(x, eta)| eta.text == prime(&x.text))
@@ -71,31 +73,31 @@ pub(crate) fn prime(coordinate: &str) -> String {
     format!("{coordinate}'")
 }
 
-/// The kinds of joints, by the motions they allow.
+/// The kinds of joints, described by the motions that they allow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointKind {
     /// Nothing.
     Fixed,
-    /// A turn about an axis.
+    /// A rotation about an axis.
     Revolute,
-    /// A slide along an axis.
+    /// A translation along an axis.
     Prismatic,
-    /// A turn about an axis with an advance along it.
+    /// A rotation about an axis with an advance along it.
     Screw,
-    /// A slide along an axis and a turn about it.
+    /// A translation along an axis and a rotation about it.
     Cylindrical,
-    /// Turns about an axis of the one body and an axis of the other.
+    /// Rotations about an axis of one body and an axis of the other.
     Universal,
-    /// Slides across a normal and a turn about it.
+    /// Translations perpendicular to a normal and a rotation about it.
     Planar,
-    /// All turns.
+    /// All rotations.
     Spherical,
     /// All motions.
     Free,
 }
 
 impl JointKind {
-    /// The kinds by their words.
+    /// The kinds, each with its word in the text.
     pub(crate) const ALL: &'static [(&'static str, JointKind)] = &[
         ("fixed", JointKind::Fixed),
         ("revolute", JointKind::Revolute),
@@ -113,7 +115,7 @@ impl JointKind {
         Self::ALL.iter().find(|(_, kind)| *kind == self).map_or("", |(word, _)| word)
     }
 
-    /// The number of its axes.
+    /// The number of axes that this kind of joint has.
     pub fn axes(self) -> usize {
         match self {
             JointKind::Fixed | JointKind::Spherical | JointKind::Free => 0,
@@ -136,7 +138,7 @@ impl JointKind {
         ends.iter().map(|end| format!("{name}{end}")).collect()
     }
 
-    /// The names of its quasi-velocities, for coordinates of these names.
+    /// The names of the quasi-velocities of a joint called `name` whose coordinates have these names.
     pub(crate) fn quasi_velocities(self, name: &str, coordinates: &[String]) -> Vec<String> {
         let ends: &[&str] = match self {
             JointKind::Spherical => &["_ω1", "_ω2", "_ω3"],
@@ -146,7 +148,7 @@ impl JointKind {
         ends.iter().map(|end| format!("{name}{end}")).collect()
     }
 
-    /// The place of the first component of its quaternion among its coordinates.
+    /// The index of the first component of its quaternion among its coordinates, if it has one.
     pub fn quaternion(self) -> Option<usize> {
         match self {
             JointKind::Spherical => Some(0),
@@ -166,21 +168,21 @@ impl JointKind {
 pub enum JointRotation {
     /// The rows of the matrix.
     Matrix(Box<[Expression; 9]>),
-    /// Turns about axes, 0 to 2, each about an axis as turned by the preceding ones.
+    /// Successive rotations about axes 0 to 2, each about an axis as rotated by the preceding ones.
     Turns(Vec<(usize, Expression)>),
 }
 
-/// A point of a body, whose place and attitude have names.
+/// A point of a body; its position and the orientation of the body there have names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
     /// Its label.
     pub name: Name,
-    /// The body it belongs to.
+    /// The body to which it belongs.
     pub body: Located<String>,
-    /// Its place, in body axes from the origin of the body; this origin if left out.
+    /// Its position in body axes, relative to the origin of the body; this origin if left out.
     pub at: Option<[Expression; 3]>,
-    /// `NAME_x` to `NAME_z`, its place along fixed axes, then `NAME_11` to `NAME_33`, the rotation of its
-    /// body, row after row.
+    /// `NAME_x` to `NAME_z`, its position along fixed axes, then `NAME_11` to `NAME_33`, the rotation matrix
+    /// of its body, row by row.
     pub components: Vec<Name>,
 }
 
@@ -192,12 +194,12 @@ impl Point {
         Point { components: Self::ENDS.map(component).to_vec(), name, body, at }
     }
 
-    /// The body it belongs to, none for the world.
+    /// The body to which it belongs; none for the world.
     pub fn body(&self) -> Option<&str> {
         Some(self.body.value.as_str()).filter(|body| *body != WORLD)
     }
 
-    /// The number of a component.
+    /// The index of the component with this name.
     pub fn component(&self, name: &str) -> Option<usize> {
         self.components.iter().position(|component| component.text == name)
     }

@@ -1,4 +1,4 @@
-//! Joints between bodies of the tree, as constraints on points of these.
+//! Joints between bodies of the tree, as constraints on points of these bodies.
 
 use super::reader::{Item, Table};
 use crate::diagnostics::error::ModelError;
@@ -16,7 +16,7 @@ const DIRECTIONS: &str = "axis = [[0, 0, 1], [0, 0, 1]]";
 pub(super) struct Loop {
     pub(super) name: Name,
     pub(super) points: [Point; 2],
-    /// Expressions that stay zero, functions of the components of the points.
+    /// Expressions that are required to stay zero, as functions of the components of the points.
     pub(super) constraints: Vec<Expression>,
 }
 
@@ -25,9 +25,10 @@ pub(super) struct Loop {
 enum Closing {
     /// A point of one body coincides with a point of the other.
     Point,
-    /// A point coincides, and an axis of one body is parallel to one of the other.
+    /// A point of one body coincides with a point of the other, and an axis of one is parallel to an axis of
+    /// the other.
     Revolute,
-    /// A point of one body keeps its distance from a point of the other.
+    /// A point of one body keeps a constant distance from a point of the other.
     Rod,
 }
 
@@ -136,7 +137,7 @@ fn axis(item: &Item<'_>) -> Result<[f64; 3], ModelError> {
     Ok(axis.map(|value| value / norm(axis)))
 }
 
-/// Two unit vectors orthogonal to a unit vector and to each other.
+/// Two unit vectors that are orthogonal to a given unit vector and to each other.
 fn across(u: [f64; 3]) -> [[f64; 3]; 2] {
     let least = (0..3).fold(0, |least, i| if u[i].abs() < u[least].abs() { i } else { least });
     let first = cross(u, [0, 1, 2].map(|i| f64::from(u8::from(i == least))));

@@ -1,4 +1,4 @@
-//! From the text of a model to its document, section by section.
+//! Reads the text of a model as a document, section by section.
 //!
 //! ```
 //! use pc_model::{Document, Source};
@@ -23,7 +23,7 @@ impl Document {
     /// The document of a model file.
     ///
     /// # Errors
-    /// The first error in the file, if it is not a model.
+    /// The first error in the file, if the file is not a model.
     pub fn parse(source: Source) -> Result<Self, ModelError> {
         deep(|| Document::parsed(source))
     }
@@ -46,7 +46,7 @@ impl Document {
     /// The document of a model file as read from disk.
     ///
     /// # Errors
-    /// As [`Document::parse`], and when the bytes are not UTF-8.
+    /// As for [`Document::parse`], and also if the bytes are not UTF-8.
     pub fn from_bytes(name: impl Into<String>, bytes: &[u8]) -> Result<Self, ModelError> {
         Self::parse(Source::from_bytes(name, bytes))
     }

@@ -1,4 +1,4 @@
-//! Typed access to TOML values, with an error that shows the place where the type is wrong.
+//! Typed access to TOML values, with errors that show where a type is wrong.
 
 use std::ops::Range;
 
@@ -26,9 +26,9 @@ pub(super) struct Table<'a> {
 pub(super) struct Item<'a> {
     source: &'a Source,
     key: &'a str,
-    /// Bytes of the key as written, quotes included.
+    /// The bytes of the key as written, including quotes.
     key_span: Range<usize>,
-    /// Path of the entry and bytes of its value.
+    /// The path of the entry, and the bytes of its value.
     place: Place,
     value: &'a DeValue<'a>,
 }
@@ -66,12 +66,12 @@ impl<'a> Table<'a> {
         self.entries.contains_key(key)
     }
 
-    /// An expression implied by the text at a place.
+    /// An expression implied by the text at a place in the file.
     pub(super) fn following(&self, text: String, place: &Place) -> Result<Expression, ModelError> {
         Expression::following(self.source, text, place)
     }
 
-    /// The entries as `name = "expression"`, where names are declared elsewhere and the velocity `x'` of a
+    /// The entries as `name = "expression"`, whose names are declared elsewhere; the velocity `x'` of a
     /// coordinate stands for the coordinate.
     pub(super) fn on_velocities(&self) -> Result<Vec<NamedExpression>, ModelError> {
         let entry = |item: Item<'a>| {
@@ -81,14 +81,14 @@ impl<'a> Table<'a> {
         self.items().map(entry).collect()
     }
 
-    /// The entries as `name = "expression"`, where names are declared elsewhere.
+    /// The entries as `name = "expression"`, whose names are declared elsewhere.
     pub(super) fn expressions(&self) -> Result<Vec<NamedExpression>, ModelError> {
         self.items()
             .map(|item| Ok(NamedExpression { name: item.name()?, expression: item.expression()? }))
             .collect()
     }
 
-    /// The entries as `name = "expression"`, which declare the names.
+    /// The entries as `name = "expression"`, which declare these names.
     pub(super) fn declarations(&self) -> Result<Vec<NamedExpression>, ModelError> {
         self.items()
             .map(|item| Ok(NamedExpression { name: item.new_name()?, expression: item.expression()? }))
@@ -143,14 +143,14 @@ impl<'a> Item<'a> {
         self.error(ErrorKind::WrongType { expected, found, example })
     }
 
-    /// The key as any label, such as that of a body.
+    /// The key as a label, such as that of a body.
     pub(super) fn label(&self) -> Name {
         let raw = self.source.slice(self.key_span.clone());
         let span = TextMap::new(raw, self.key_span.start, self.key).locate(0..self.key.len());
         Name { text: self.key.into(), place: Place { entry: self.place.entry.clone(), span } }
     }
 
-    /// The key as a label, which need not be a name but must have no hidden characters.
+    /// The key as a label, which need not be a name but must not contain hidden characters.
     pub(super) fn new_label(&self) -> Result<Name, ModelError> {
         if self.key.contains(is_hidden) {
             return Err(self.key_error(ErrorKind::HiddenInLabel { label: self.key.into() }));
@@ -175,7 +175,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// A name derived from the key, with its place.
+    /// A name derived from the key, with the place of the key.
     pub(super) fn derived_name(&self, text: String) -> Result<Name, ModelError> {
         match text.as_str() {
             name if !is_name(name) => Err(self.key_error(ErrorKind::NotAName { key: text })),
@@ -362,7 +362,7 @@ impl<'a> Item<'a> {
         self.elements(array).map(|element| element.expression()).collect()
     }
 
-    /// The value as a list of one of the given lengths, with any elements.
+    /// The value as a list of one of the given lengths, with elements of any type.
     pub(super) fn parts(
         &self,
         lengths: &[usize],
@@ -386,7 +386,7 @@ impl<'a> Item<'a> {
         })
     }
 
-    /// The value as a list of texts of any length.
+    /// The value as a list of strings; the list may have any length.
     pub(super) fn texts(
         &self,
         expected: &'static str,
@@ -398,7 +398,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// The value as a list of finite numbers of any length.
+    /// The value as a list of finite numbers; the list may have any length.
     pub(super) fn numbers(
         &self,
         expected: &'static str,

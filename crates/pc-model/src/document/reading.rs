@@ -1,17 +1,17 @@
-//! Reading of texts, up to a size.
+//! Reads texts up to a maximum size.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-/// The most bytes that are read of a model or of a table of an input: 64 MiB. Even a device, which has no end, takes
-/// no more memory.
+/// The largest number of bytes that are read from a model or from a table of an input: 64 MiB. Reading a device,
+/// which has no end, takes no more memory than this.
 pub const MOST_BYTES: u64 = 64 << 20;
 
-/// The whole contents of a model or a table.
+/// The whole contents of a model or a table of an input.
 ///
 /// # Errors
-/// [`ErrorKind::FileTooLarge`] if there are more than [`MOST_BYTES`]; any error of the reader.
+/// [`ErrorKind::FileTooLarge`] if there are more than [`MOST_BYTES`] bytes; any error of the reader.
 pub fn read_bounded(from: impl Read) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     from.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
@@ -25,7 +25,7 @@ pub fn read_bounded(from: impl Read) -> io::Result<Vec<u8>> {
 /// The whole contents of a file.
 ///
 /// # Errors
-/// As for [`read_bounded`], and the errors of opening it.
+/// As for [`read_bounded`], and any error in opening the file.
 pub fn read_file_bounded(path: impl AsRef<Path>) -> io::Result<Vec<u8>> {
     read_bounded(File::open(path)?)
 }

@@ -7,7 +7,7 @@ use crate::document::expression::{Located, NamedExpression};
 use crate::document::tolerance::AbsoluteTolerance;
 use crate::variables::Variables;
 
-/// The settings of a run; the program chooses those left out.
+/// The settings of a run; the program chooses those that are left out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Simulation {
     /// The section's header.
@@ -26,8 +26,8 @@ pub struct Simulation {
     pub max_step: Option<Located<f64>>,
     /// The number of parts of each step that are searched for events, at least 1.
     pub samples_per_step: Option<Located<u32>>,
-    /// The fraction of the first interval between events to which the remaining time shrinks before they count as
-    /// accumulated, at least 0 and less than 1.
+    /// The fraction of the first interval between events to which the time remaining until their accumulation
+    /// must shrink before they count as accumulated; at least 0 and less than 1.
     pub accumulation: Option<Located<f64>>,
     /// Integration method.
     pub method: Option<Located<Method>>,
@@ -35,9 +35,9 @@ pub struct Simulation {
     pub form: Option<Located<Variables>>,
     /// The quasi-velocities of the form `hamel`, as linear forms in the velocities.
     pub hamel: Vec<NamedExpression>,
-    /// The velocities that are to be independent; the program's choice if there are none.
+    /// The velocities that are to be independent; if empty, the program chooses them.
     pub independent: Vec<Located<String>>,
-    /// Integrals, or `energy`, to whose values at the start the motion is projected.
+    /// The integrals, or `energy`, that projection keeps at their values at the start.
     pub project: Vec<Located<String>>,
 }
 

@@ -1,4 +1,4 @@
-//! The sections on the system: names, kinematics, algebra, constraints, energy.
+//! The sections that describe the system: names, kinematics, algebra, constraints, energy.
 
 use std::collections::HashSet;
 

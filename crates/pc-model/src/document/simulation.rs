@@ -1,4 +1,4 @@
-//! The sections on the run: events and simulation.
+//! The sections that describe the run: events and simulation.
 
 use pc_expr::{Direction, Method};
 
@@ -11,10 +11,10 @@ use crate::document::run_settings::Simulation;
 use crate::document::tolerance::AbsoluteTolerance;
 use crate::variables::Variables;
 
-/// The most rows of a table: each is held in memory.
+/// The largest number of rows in a table: each is held in memory.
 pub const MOST_SAMPLES: usize = 10_000_000;
 
-/// The most places in one step where events are looked for.
+/// The largest number of points in one step at which events are looked for.
 const MOST_SAMPLES_PER_STEP: u32 = 10_000;
 
 pub(super) fn simulation(table: &Table<'_>) -> Result<Simulation, ModelError> {
@@ -105,7 +105,7 @@ fn samples_per_step(item: &Item<'_>) -> Result<Located<u32>, ModelError> {
     }
 }
 
-/// From 0 to less than 1.
+/// A number that is at least 0 and less than 1.
 fn part(item: &Item<'_>) -> Result<Located<f64>, ModelError> {
     let number = item.number()?;
     if (0.0..1.0).contains(&number.value) {
@@ -122,7 +122,7 @@ fn tolerance(item: &Item<'_>, example: &'static str) -> Result<Located<f64>, Mod
     positive(item, "a tolerance greater than 0", example)
 }
 
-/// One number, or one for each of some names.
+/// One number, or a number for each of several names.
 fn absolute(item: &Item<'_>) -> Result<AbsoluteTolerance, ModelError> {
     if !item.is_table() {
         return Ok(AbsoluteTolerance { all: Some(tolerance(item, "atol = 1e-12")?.value), each: Vec::new() });

@@ -1,4 +1,4 @@
-//! The TOML layer: from bytes to a table, with the parser's errors in plain words.
+//! The TOML layer: it turns bytes into a table and puts the parser's errors into plain words.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::source::{Place, Source};
 
-/// The table of a whole file.
+/// The TOML table of a whole file.
 pub(super) fn table(source: &Source) -> Result<DeTable<'_>, ModelError> {
     let at = |span: Range<usize>, kind: ErrorKind| source.error(&Place { entry: String::new(), span }, kind);
     if let Some((offset, byte)) = source.damage() {
@@ -35,7 +35,7 @@ fn kind(source: &Source, error: &Error, span: &Range<usize>) -> ErrorKind {
     ErrorKind::Toml { message: message.into(), help: help(source, message, span) }
 }
 
-/// What the line at `span` probably means.
+/// What was probably meant by the line at `span`.
 fn help(source: &Source, message: &str, span: &Range<usize>) -> &'static str {
     let text = source.text();
     let start = text[..text.floor_char_boundary(span.start)].rfind('\n').map_or(0, |newline| newline + 1);
@@ -64,7 +64,7 @@ fn help(source: &Source, message: &str, span: &Range<usize>) -> &'static str {
     }
 }
 
-/// Whether a value is a number with a decimal or thousands comma.
+/// Whether a value is a number written with a comma, as a decimal mark or between thousands.
 fn is_decimal_comma(value: &str) -> bool {
     let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     let value = value.split('#').next().unwrap_or_default().trim();

@@ -1,16 +1,18 @@
-//! From places in a decoded TOML string back to places in the file.
+//! Translates places in a decoded TOML string back to places in the file.
 
 use std::ops::Range;
 
-/// Maps offsets in the value of a TOML string (or key, or number) to offsets in the file it was written in.
+/// Maps offsets in the value of a TOML string (or key, or number) to offsets in the file in which it is
+/// written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TextMap {
     pieces: Vec<Piece>,
-    /// Offset in the file of the end of the value, before the closing quotes.
+    /// The offset in the file at which the value ends, before the closing quotes.
     end: usize,
 }
 
-/// `decoded` of the value corresponds to `file`; verbatim if the lengths agree, else an escape.
+/// The bytes `decoded` of the value correspond to the bytes `file`; they are verbatim if the lengths agree,
+/// otherwise they are an escape.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Piece {
     decoded: Range<usize>,
@@ -18,7 +20,7 @@ struct Piece {
 }
 
 impl TextMap {
-    /// The map of the literal `raw`, which begins at offset `start` of the file and whose value is `value`.
+    /// The map of the literal `raw`, which begins at offset `start` in the file and has the value `value`.
     pub(crate) fn new(raw: &str, start: usize, value: &str) -> Self {
         let mut scan = Scan::new(raw, start);
         scan.run();
@@ -30,18 +32,18 @@ impl TextMap {
         Self { pieces: vec![whole], end: start + raw.len() }
     }
 
-    /// The map of a text to itself.
+    /// The map that takes a text to itself.
     pub(crate) fn verbatim(text: &str) -> Self {
         let whole = 0..text.len();
         Self { pieces: vec![Piece { decoded: whole.clone(), file: whole }], end: text.len() }
     }
 
-    /// The map of a text of `length` bytes to a single place.
+    /// The map that takes every part of a text of `length` bytes to the same place in the file.
     pub(crate) fn standing_for(place: Range<usize>, length: usize) -> Self {
         Self { end: place.end, pieces: vec![Piece { decoded: 0..length, file: place }] }
     }
 
-    /// Place in the file of a place in the value.
+    /// The bytes in the file that correspond to these bytes of the value.
     pub fn locate(&self, span: Range<usize>) -> Range<usize> {
         let start = self.place(span.start).map_or(self.end, |(piece, file)| file.unwrap_or(piece.file.start));
         if span.end <= span.start {
@@ -55,7 +57,7 @@ impl TextMap {
         start..end.max(start)
     }
 
-    /// The piece with an offset, and the file offset if the piece is verbatim.
+    /// The piece that contains an offset, and the offset in the file if the piece is verbatim.
     fn place(&self, offset: usize) -> Option<(&Piece, Option<usize>)> {
         let piece = self.pieces.get(self.pieces.partition_point(|piece| piece.decoded.end <= offset))?;
         let verbatim = piece.decoded.len() == piece.file.len();
@@ -63,11 +65,11 @@ impl TextMap {
     }
 }
 
-/// A pass over a literal that has already been accepted as TOML.
+/// A scan of a literal that has already been accepted as TOML.
 struct Scan<'a> {
     raw: &'a str,
     start: usize,
-    /// Offset in `raw`.
+    /// The offset in `raw`.
     at: usize,
     decoded: String,
     pieces: Vec<Piece>,
@@ -109,7 +111,7 @@ impl<'a> Scan<'a> {
         self.at += length;
     }
 
-    /// Steps over the escape with which `rest` begins.
+    /// Advances past the escape with which `rest` begins.
     fn escape(&mut self, rest: &str) {
         let mut characters = rest.chars().skip(1);
         let Some(letter) = characters.next() else { return self.push("\\", 1) };

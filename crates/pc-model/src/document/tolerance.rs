@@ -3,20 +3,20 @@
 /// Absolute tolerances as they are given: one for all components of the state, one for some of them, or both.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AbsoluteTolerance {
-    /// The tolerance of each component that does not have its own.
+    /// The common tolerance, for all components that do not have their own.
     pub all: Option<f64>,
     /// Names of components, each with its own tolerance.
     pub each: Vec<(String, f64)>,
 }
 
 impl AbsoluteTolerance {
-    /// The tolerance of each component: its own, else the common one, else the default.
+    /// The tolerance of each component: its own, otherwise the common one, otherwise the default.
     pub fn over(&self, names: &[String], usual: &[f64]) -> Vec<f64> {
         let of = |(name, &usual): (&String, &f64)| self.own(name).or(self.all).unwrap_or(usual);
         names.iter().zip(usual).map(of).collect()
     }
 
-    /// These, and those of `other` where none is given here.
+    /// These tolerances, completed by those of `other` where none is given here.
     pub fn or(mut self, other: &AbsoluteTolerance) -> AbsoluteTolerance {
         self.all = self.all.or(other.all);
         let further = other.each.iter().filter(|(name, _)| self.own(name).is_none()).cloned();
@@ -24,7 +24,7 @@ impl AbsoluteTolerance {
         self
     }
 
-    /// The one that is given last counts.
+    /// The tolerance given for this name; the last one if there are several.
     fn own(&self, name: &str) -> Option<f64> {
         self.each.iter().rev().find(|(known, _)| known == name).map(|&(_, tolerance)| tolerance)
     }

@@ -18,7 +18,7 @@ const AXES: &str = "axes = [[1, 0, 0], [0, 1, 0]]";
 const AT: &str = "at = [0, 0, 0]";
 const TURNS: &str = "turns = [[\"z\", \"pi/2\"], [\"x\", \"a\"]]";
 
-/// Some roundings of a number near 1.
+/// A few rounding errors of a number near 1.
 pub(crate) const ROUNDING: f64 = 1e-15;
 
 /// The bodies with a position, and those with a joint.
@@ -142,9 +142,9 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
     Ok(Joint { place: item.place(), kind, axes, pitch, at, rotation, coordinates, quasi_velocities })
 }
 
-/// The components of a direction. A component that is rounding relative to the largest is set to 0, such as
-/// cos(π/2) in axes written by a program: a loop must not restrict the directions that parallel axes leave
-/// free.
+/// The components of a direction. A component that is only rounding error relative to the largest, such as
+/// cos(π/2) in axes written by a program, is set to 0: otherwise a loop could restrict directions that
+/// parallel axes leave free.
 pub(super) fn direction(item: &Item<'_>, example: &'static str) -> Result<[f64; 3], ModelError> {
     let components = item.parts(&[3], "3 numbers", example)?;
     let mut direction = [0.0; 3];
@@ -158,8 +158,8 @@ pub(super) fn direction(item: &Item<'_>, example: &'static str) -> Result<[f64; 
     }
 }
 
-/// Checks the normal of a planar joint: the slides are along the joint axes that follow it, so it is one of
-/// these axes.
+/// Checks that the normal of a planar joint is one of the joint axes: the translations are along the joint
+/// axes that follow it.
 fn check_normal(kind: JointKind, part: &Item<'_>, normal: [f64; 3]) -> Result<(), ModelError> {
     if kind != JointKind::Planar
         || (0..3).any(|i| normal[i] > 0.0 && normal[(i + 1) % 3] == 0.0 && normal[(i + 2) % 3] == 0.0)
@@ -185,7 +185,7 @@ fn without_effect(part: &Item<'_>, kind: JointKind) -> ModelError {
     part.key_error(ErrorKind::OfOtherJoints { key: part.key().to_owned(), example })
 }
 
-/// The names listed in an entry, or the default ones.
+/// The names listed in an entry, or the default names.
 fn names(list: Option<&Item<'_>>, body: &Item<'_>, usual: Vec<String>) -> Result<Vec<Name>, ModelError> {
     let Some(list) = list else {
         return usual.into_iter().map(|name| body.derived_name(name)).collect();

@@ -12,15 +12,15 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::model::model::Model;
 
-/// A stage of the work.
+/// The name of this stage of the work.
 const PROGRAM: &str = "the program of the equations";
 
 impl Model {
     /// Compiles the motion of this model and evaluates it at the start, which is returned with it: (x, η) with the
-    /// free quasi-velocities if constraints make the others vanish, with all otherwise.
+    /// free quasi-velocities if constraints make the others vanish, otherwise with all of them.
     ///
     /// # Errors
-    /// [`ModelError`] if it cannot be evaluated there.
+    /// [`ModelError`] if the motion cannot be evaluated there.
     pub fn compile(&self, assembly: &Assembly<'_>) -> Result<(Motion, Vec<f64>), ModelError> {
         self.document().stage(assembly.system.graph(), PROGRAM, || self.compile_formulation(assembly))
     }
@@ -36,8 +36,8 @@ impl Model {
         }
     }
 
-    /// Compiles the equations with multipliers and evaluates them at the start (x, η, z) with all η,
-    /// which is returned with them.
+    /// Compiles the equations with multipliers and evaluates them at the start (x, η, z), which contains all
+    /// η and is returned with them.
     ///
     /// # Errors
     /// [`ModelError`] if they cannot be evaluated there.
@@ -110,8 +110,8 @@ impl Model {
         })
     }
 
-    /// The names of the kept integrals, without those of the text that are missing in a system with fewer
-    /// coordinates.
+    /// The names of the integrals to be kept, without those of the text that do not exist in a system with
+    /// fewer coordinates.
     fn kept_of(&self, system: &System<'_>) -> Vec<String> {
         let is_written =
             |name: &String| self.document().integrals.iter().any(|known| known.name.text == *name);
@@ -119,15 +119,16 @@ impl Model {
         self.kept().iter().filter(|name| is_there(name) || !is_written(name)).cloned().collect()
     }
 
-    /// With external forces, the derivative with respect to them is part of the Jacobian.
+    /// The options of the compilation. If there are external forces, the derivatives with respect to them are
+    /// part of the Jacobian.
     fn options(&self) -> CompileOptions {
         CompileOptions::default()
             .parameter_jacobian(self.differentiates_by_parameters() || !self.external.is_empty())
             .time_derivative(self.differentiates_by_time())
     }
 
-    /// The compiled motion, if it can be evaluated at the start, projected to the kept integrals. These have
-    /// to be integrals for any external forces.
+    /// The compiled motion, if it can be evaluated at the start, with projection onto the integrals to be
+    /// kept. These have to be integrals whatever the external forces.
     fn started(
         &self,
         compiled: Result<Motion, MechError>,

@@ -3,24 +3,24 @@
 use pc_expr::{Failure, VectorField};
 use pc_mech::{Motion, Multipliers};
 
-/// A value of a reset that constraints change by more than this, absolute or relative, whichever is larger, has
-/// changed by more than rounding.
+/// If constraints change a value set by a reset by more than this, absolute or relative, whichever is larger,
+/// the change is more than rounding error.
 const OFF: f64 = 1e-8;
 /// The factor by which a reset may increase the distance of a state from the constraints.
 const LENGTHENED: f64 = 10.0;
 
-/// The states that constraints allow after resets.
+/// Moves states onto the constraints after resets.
 #[derive(Clone, Debug)]
 pub(super) struct ConstrainedResets {
     /// The motion under constraints, in all quasi-velocities.
     motion: Motion,
-    /// The quasi-velocities that determine the others, which keep their values.
+    /// The quasi-velocities that determine the others and that keep their values.
     determining: Vec<usize>,
     /// The number of velocities that the constraints leave free.
     free: usize,
 }
 
-/// The error of a reset to a state that constraints forbid.
+/// The error for a reset to a state that constraints forbid.
 #[derive(Debug, thiserror::Error)]
 #[error("its reset leaves the constraints: {component} would have to be {allowed}, not {given}")]
 struct OffConstraints {
@@ -30,7 +30,7 @@ struct OffConstraints {
 }
 
 impl ConstrainedResets {
-    /// The resets under these constraints on `motion`, whose first `declared` quasi-velocities are those of the text.
+    /// The resets of `motion` under these constraints; its first `declared` quasi-velocities are those of the text.
     pub(super) fn new(motion: &Motion, multipliers: &Multipliers<'_>, declared: usize) -> ConstrainedResets {
         let all = multipliers.coefficients().columns();
         let free = all - multipliers.constraints().len();
@@ -47,9 +47,9 @@ impl ConstrainedResets {
     /// Moves a state (x, η, z) onto the constraints after a reset has set the components `places`; `before` is the
     /// state before it.
     ///
-    /// Velocities that are set stay as they are, and the others follow. If more are set than the constraints leave
-    /// free, all move to the nearest values allowed. Coordinates stay: the state is at the event, and rounding must
-    /// not move it back.
+    /// Velocities that are set stay as they are, and the others are adjusted. If more are set than the constraints
+    /// leave free, all velocities move to the nearest allowed values. Coordinates stay: the state is at the event,
+    /// and rounding errors must not move it back.
     ///
     /// # Errors
     /// A [`Failure`] if a coordinate, or a velocity that should stay, would have to move; or if no state on the
@@ -83,8 +83,8 @@ impl ConstrainedResets {
         self.check(t, before, &given, state, &keeping)
     }
 
-    /// Checks that these components were moved by no more than rounding. A state that is itself at some distance from
-    /// the constraints, such as one displaced for derivatives, keeps that distance.
+    /// Checks that the components `keeping` were moved by no more than rounding error. A state that is already at
+    /// some distance from the constraints, such as one displaced to compute derivatives, keeps that distance.
     fn check(
         &mut self,
         t: f64,

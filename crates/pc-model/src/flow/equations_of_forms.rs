@@ -7,8 +7,8 @@ use crate::diagnostics::error::ModelError;
 use crate::variables::Variables;
 
 impl<'g> Assembly<'g> {
-    /// The system of the quasi-velocities of the state; for momenta, if multipliers hold constraints, that of
-    /// independent ones.
+    /// The system in the quasi-velocities of the state; for momenta, if multipliers enforce the constraints,
+    /// the system in independent quasi-velocities.
     ///
     /// # Errors
     /// [`ModelError`] at the constraint under which there are no independent velocities.
@@ -21,7 +21,8 @@ impl<'g> Assembly<'g> {
         })
     }
 
-    /// M η̇ = r in the quasi-velocities of the state, or those of its momenta; without the reactions of multipliers.
+    /// The equations M η̇ = r in the quasi-velocities of the state, or those of its momenta, without the reactions
+    /// of multipliers.
     ///
     /// # Errors
     /// [`ModelError`] at the constraint under which there are no independent velocities.
@@ -33,11 +34,11 @@ impl<'g> Assembly<'g> {
         }
     }
 
-    /// The canonical equations of the momenta of the [system](Assembly::system_in) in these variables, with the η
-    /// solved for from their start if the equations are not closed.
+    /// The canonical equations in the momenta of the [system](Assembly::system_in) in these variables. If the η
+    /// have no closed formula, they are solved for numerically, beginning with their values at the start.
     ///
     /// # Errors
-    /// [`ModelError`] if there are none.
+    /// [`ModelError`] if there are no canonical equations.
     pub fn canonical_in(&self, variables: Variables) -> Result<Canonical<'g>, ModelError> {
         let system = self.system_in(variables)?;
         let start = match variables.are_own() {
@@ -51,11 +52,11 @@ impl<'g> Assembly<'g> {
         canonical.map_err(|error| self.document.derivation_error(error))
     }
 
-    /// The conversion between the quasi-velocities of the state and its momenta; if multipliers hold the
+    /// The conversion between the quasi-velocities of the state and its momenta; if multipliers enforce the
     /// constraints and momenta are integrated, it gives quasi-velocities that satisfy the constraints.
     ///
     /// # Errors
-    /// [`ModelError`] if there is none.
+    /// [`ModelError`] if there is no such conversion.
     pub fn legendre_transform(&self, variables: Variables) -> Result<LegendreTransform, ModelError> {
         let transform = match (variables, self.constraints.held()) {
             (Variables::Momenta, Some(held)) => held.legendre_transform(&self.start_velocities()),

@@ -1,4 +1,4 @@
-//! Derivatives of events and of their resets by time, state and parameters.
+//! Derivatives of events and of their resets with respect to time, state and parameters.
 
 use pc_expr::{Backend, Evaluator, Expr, Program};
 use pc_mech::MechError;
@@ -8,17 +8,18 @@ use crate::diagnostics::error::ModelError;
 use crate::flow::reading::inputs;
 use crate::model::model::Model;
 
-/// For each event the derivatives of its function, and of the values that its reset writes, by (t, y, p),
-/// where y = (x, η, z) with the free η; the other η are functions of these.
+/// For each event, the derivatives of its function and of the values that its reset writes with respect to
+/// (t, y, p), where y = (x, η, z) with the free η; the other η are functions of these.
 #[derive(Clone, Debug)]
 pub(super) struct EventSlopes {
     dim: usize,
-    /// Number of symbols in (t, y, p).
+    /// The number of symbols in (t, y, p).
     symbols: usize,
     events: Vec<Compiled>,
 }
 
-/// The components of the state that a reset writes, and the rows of the function and of these.
+/// The components of the state that a reset writes, and the rows of derivatives of the event's function and
+/// of these components.
 #[derive(Clone, Debug)]
 struct Compiled {
     places: Vec<usize>,
@@ -26,14 +27,14 @@ struct Compiled {
     values: Vec<f64>,
 }
 
-/// Derivatives of one event at one state.
+/// The derivatives of one event at one state.
 pub(super) struct Slopes<'a> {
     dim: usize,
     symbols: usize,
     compiled: &'a Compiled,
 }
 
-/// Derivatives of one function by (t, y, p).
+/// The derivatives of one function with respect to (t, y, p).
 #[derive(Clone, Copy)]
 pub(super) struct Row<'a> {
     dim: usize,
@@ -41,10 +42,11 @@ pub(super) struct Row<'a> {
 }
 
 impl EventSlopes {
-    /// The derivatives for these free quasi-velocities, `all` of them as functions of (t, x, free η, z).
+    /// The derivatives for these free quasi-velocities; `all` quasi-velocities are given as functions of (t,
+    /// x, free η, z).
     ///
     /// # Errors
-    /// [`ModelError`] if they cannot be compiled.
+    /// [`ModelError`] if the derivatives cannot be compiled.
     pub(super) fn new<'g>(
         model: &Model,
         assembly: &Assembly<'g>,
@@ -99,7 +101,8 @@ impl<'a> Slopes<'a> {
         self.row(0)
     }
 
-    /// The derivatives in `of`, for each component that the reset writes, with its index in the state.
+    /// For each component that the reset writes, its index in the state and the derivative that `of` takes
+    /// from its row.
     pub(super) fn resets(&self, of: impl Fn(Row<'a>) -> f64) -> impl Iterator<Item = (usize, f64)> {
         self.compiled.places.iter().enumerate().map(move |(i, &place)| (place, of(self.row(i + 1))))
     }
@@ -118,7 +121,7 @@ impl<'a> Row<'a> {
         self.values[1 + self.dim + j]
     }
 
-    /// Along (τ, v) in time and state.
+    /// The derivative in the direction (τ, v) in time and state.
     pub(super) fn along(self, in_time: f64, v: &[f64]) -> f64 {
         let by_state = self.by_state().iter().zip(v).map(|(slope, v)| slope * v);
         self.by_time() * in_time + by_state.sum::<f64>()

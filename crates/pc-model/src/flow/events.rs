@@ -1,4 +1,4 @@
-//! The events of a model on the states that are integrated, in any form.
+//! The events of a model, evaluated on the states that are integrated, whatever the form of the equations.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::flow::event_slopes::EventSlopes;
 use crate::flow::reading::{Reading, inputs};
 use crate::model::model::Model;
 
-/// The events of a model, compiled. Functions and resets see (x, η) with all quasi-velocities.
+/// The events of a model, compiled. Functions and resets are evaluated on (x, η) with all quasi-velocities.
 #[derive(Clone, Debug)]
 pub struct FlowEvents {
     events: Vec<Event>,
@@ -22,11 +22,11 @@ pub struct FlowEvents {
     signals: Signals,
     functions: Evaluator,
     resets: Vec<Reset>,
-    /// Derivatives of both, if states are read and written by formulas.
+    /// The derivatives of functions and resets, if states are read and written by formulas.
     slopes: Option<EventSlopes>,
     /// The indices of inputs with tables.
     tables: Vec<usize>,
-    /// The effect on resets of constraints that multipliers hold.
+    /// The effect on resets of constraints enforced by multipliers.
     constraints: Option<ConstrainedResets>,
     /// Storage for (x, η, z) with all η.
     room: Vec<f64>,
@@ -43,7 +43,7 @@ struct Reset {
 #[error("these events were not compiled with their derivatives")]
 struct NoSlopes;
 
-/// The error for sensitivities to a function of time.
+/// The error for sensitivities with respect to a function of time.
 #[derive(Debug, thiserror::Error)]
 #[error("there is no derivative by parameter {parameter} (from 0): it is an input with a table")]
 struct OfTable {
@@ -51,8 +51,8 @@ struct OfTable {
 }
 
 impl FlowEvents {
-    /// The events of a model whose states are read in this way; `watch` is the motion of all quasi-velocities
-    /// if there are multipliers.
+    /// The events of a model whose states are converted by `reading`; `watch` is the motion in all
+    /// quasi-velocities if there are multipliers.
     ///
     /// # Errors
     /// [`ModelError`] if they cannot be compiled.
@@ -95,10 +95,10 @@ impl FlowEvents {
         })
     }
 
-    /// Gives all parameters other values, in the order of declaration.
+    /// Gives all parameters new values, in the order of declaration.
     ///
     /// # Panics
-    /// Unless there are as many values as parameters.
+    /// If the number of values is not that of the parameters.
     pub fn set_parameters(&mut self, parameters: &[f64]) {
         self.reading.set_parameters(parameters);
         if let Some(constraints) = &mut self.constraints {
@@ -106,8 +106,8 @@ impl FlowEvents {
         }
     }
 
-    /// ∂g/∂pⱼ and, in `reset`, ∂R/∂pⱼ by central difference quotients, accurate to ten digits: for momenta,
-    /// and for velocities that constraints determine.
+    /// Computes ∂g/∂pⱼ and, in `reset`, ∂R/∂pⱼ by central difference quotients, accurate to ten digits: for
+    /// momenta, and for velocities that constraints determine.
     fn quotient_by_parameter(
         &mut self,
         event: usize,
@@ -163,13 +163,13 @@ impl Events for FlowEvents {
         Ok(())
     }
 
-    /// The program of the functions, if states are read directly and there are no tables.
+    /// The program of the functions, if states are read without conversion and there are no tables.
     fn program(&self) -> Option<(&Arc<Program>, &[f64])> {
         let plain = self.reading.is_plain() && self.signals.is_empty() && !self.events.is_empty();
         plain.then(|| (self.functions.program(), self.reading.parameters()))
     }
 
-    /// All new values are functions of the state before.
+    /// All new values are functions of the state before the event.
     fn reset(&mut self, event: usize, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         let mut all = self.reading.read(t, y).map_err(Failure::fatal)?;
         let before = all.clone();
@@ -220,7 +220,7 @@ impl Events for FlowEvents {
         }
     }
 
-    /// False if inputs have tables, whose rates are not expressions.
+    /// False if inputs have tables, since the rates of these are not expressions.
     fn has_derivatives(&self) -> bool {
         self.slopes.is_some() && self.tables.is_empty()
     }

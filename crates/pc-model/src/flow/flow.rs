@@ -1,4 +1,4 @@
-//! The vector field that is integrated, its events, and the columns of a table of its states.
+//! The vector field to be integrated, its events, and the columns of a table of its states.
 
 use pc_mech::{LegendreTransform, MechError, Motion};
 
@@ -19,7 +19,8 @@ pub struct Flow {
     pub motion: Motion,
     /// Its state at the start.
     pub start: Vec<f64>,
-    /// The coordinates of the form, the declared quasi-velocities whatever the form, and the first-order states.
+    /// The names of the coordinates of the form, of the declared quasi-velocities whatever the form, and of the
+    /// first-order states.
     pub names: Vec<String>,
     /// The events; none in most models.
     pub events: FlowEvents,
@@ -30,7 +31,7 @@ impl Flow {
     /// The equations in these variables.
     ///
     /// # Errors
-    /// [`ModelError`] if there are none, or they cannot be evaluated at the start.
+    /// [`ModelError`] if there are no such equations, or they cannot be evaluated at the start.
     pub fn new(model: &Model, assembly: &Assembly<'_>, variables: Variables) -> Result<Flow, ModelError> {
         let refused = |error| assembly.document.derivation_error(error);
         match (variables, assembly.constraints.held()) {
@@ -117,22 +118,22 @@ impl Flow {
         })
     }
 
-    /// The same equations in quasi-velocities with other values of the parameters, at another start.
+    /// The same equations in quasi-velocities, with other values of the parameters and another start.
     pub fn with_values(&self, parameters: &[f64], start: Vec<f64>) -> Flow {
         let mut flow = Flow { start, ..self.clone() };
         flow.set_parameters(parameters);
         flow
     }
 
-    /// Gives the first parameters these values, in motion, events and rows alike.
+    /// Gives the first parameters these values, in the motion, the events and the rows.
     pub fn set_parameters(&mut self, parameters: &[f64]) {
         self.motion.parameters_mut()[..parameters.len()].copy_from_slice(parameters);
         self.events.set_parameters(parameters);
         self.reading.set_parameters(parameters);
     }
 
-    /// Coordinates, all quasi-velocities and first-order states of a state. Quasi-velocities that momenta do
-    /// not determine are NaN.
+    /// The coordinates, all quasi-velocities and the first-order states of a state. Quasi-velocities that
+    /// momenta do not determine are NaN.
     fn shown(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
         let n = self.motion.coordinates();
         self.reading.read(t, state).unwrap_or_else(|_| {
@@ -145,20 +146,21 @@ impl Flow {
         })
     }
 
-    /// The names of the numbers of each [row](Flow::row). They depend on the form: a reduced form has fewer
+    /// The names of the columns of each [row](Flow::row). They depend on the form: a reduced form has fewer
     /// coordinates.
     pub fn columns(&self) -> Vec<String> {
         self.names.iter().chain(self.motion.observable_names()).cloned().collect()
     }
 
-    /// Coordinates, declared quasi-velocities and first-order states of a state, then the observables, named by
-    /// [`columns`](Flow::columns).
+    /// The coordinates, declared quasi-velocities and first-order states of a state, then the observables;
+    /// [`columns`](Flow::columns) gives their names.
     pub fn row(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
         let observed = self.motion.observe(t, state);
         self.row_with(observed, t, state)
     }
 
-    /// The same with the observables [of one side](Motion::observe_beside) where the motion slides along a surface.
+    /// The same row, but with the observables [of one side](Motion::observe_beside) where the motion slides along a
+    /// surface.
     pub fn row_beside(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
         let observed = self.motion.observe_beside(t, state);
         self.row_with(observed, t, state)
@@ -174,13 +176,14 @@ impl Flow {
         row
     }
 
-    /// The rates of all quasi-velocities of the system when its state moves at these rates; none if the state
-    /// itself contains quasi-velocities of the system, with their rates.
+    /// The rates of all quasi-velocities of the system when the state changes at these rates; none if the
+    /// state itself contains quasi-velocities of the system, since `rates` then contains their rates.
     pub fn rates_of_quasi_velocities(&mut self, t: f64, state: &[f64], rates: &[f64]) -> Option<Vec<f64>> {
         self.reading.rates(t, state, rates)
     }
 
-    /// The state for coordinates and all quasi-velocities of the system; those that are not free are ignored.
+    /// The state for given coordinates, all quasi-velocities of the system and first-order states;
+    /// quasi-velocities that are not free are ignored.
     ///
     /// # Errors
     /// [`MechError`] if the quasi-velocities have no momenta.
@@ -188,12 +191,14 @@ impl Flow {
         self.reading.write(t, all)
     }
 
-    /// The indices, among all quasi-velocities of the system, of the free ones: those of the state, or of its momenta.
+    /// The indices, among all quasi-velocities of the system, of the free ones: those in the state, or those of its
+    /// momenta.
     pub fn free_quasi_velocities(&self) -> &[usize] {
         &self.reading.free
     }
 
-    /// Whether its quasi-velocities, or those of its momenta, are quasi-velocities of the system.
+    /// Whether the quasi-velocities of the state, or those of its momenta, are quasi-velocities of the
+    /// system.
     pub fn has_own_variables(&self) -> bool {
         !self.reading.is_changed()
     }
@@ -203,12 +208,12 @@ impl Flow {
         self.reading.transform.is_some()
     }
 
-    /// Names of the constraints held by multipliers, and of those solved for velocities.
+    /// The names of the constraints enforced by multipliers, and of those solved for velocities.
     pub fn constraint_names(&self) -> Vec<String> {
         self.motion.constraint_names().to_vec()
     }
 
-    /// The residual of each of these.
+    /// The residual of each of these constraints.
     pub fn constraint_residuals(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
         self.motion.constraint_residuals(t, state)
     }

@@ -1,4 +1,4 @@
-//! Values given by formulas of the text in parameters: other parameters, and the start.
+//! Values that the text gives as formulas in parameters: other parameters, and the start.
 
 use pc_expr::SymbolPlaces;
 use pc_mech::Expr;
@@ -12,11 +12,11 @@ use crate::names::scope::{Scope, entry};
 use crate::names::stage::Stage;
 
 impl<'g> Assembly<'g> {
-    /// The parameters that follow others, by their indices, each as a function of those that follow
-    /// none. `model` is the one assembled here.
+    /// The parameters given by expressions in others: the index of each, with its value as a function of the
+    /// parameters that are numbers. `model` is the one assembled here.
     ///
     /// # Errors
-    /// [`ModelError`] for an expression without a meaning, which would not have been assembled.
+    /// [`ModelError`] for an expression without a meaning; a model with one could not have been assembled.
     pub fn parameter_formulas(&self, model: &Model) -> Result<Vec<(usize, Expr<'g>)>, ModelError> {
         let (graph, document) = (self.system.graph(), model.document());
         let mut scope = Scope::new(graph, document);
@@ -32,12 +32,12 @@ impl<'g> Assembly<'g> {
         Ok(formulas)
     }
 
-    /// The start of a form in its coordinates, quasi-velocities and first-order states: functions of
-    /// parameters if the text gives them as such; numbers if they are numbers there, follow from
-    /// velocities, or were moved onto constraints.
+    /// The start of a form in its coordinates, quasi-velocities and first-order states. Values are functions
+    /// of parameters if the text gives them as such; they are numbers if the text gives numbers, if they were
+    /// determined from velocities, or if they were moved onto constraints.
     ///
     /// # Errors
-    /// As above.
+    /// As for [`parameter_formulas`](Assembly::parameter_formulas).
     pub fn start_formulas(&self, model: &Model, form: &FreeForm<'g>) -> Result<Vec<Expr<'g>>, ModelError> {
         let (graph, system) = (self.system.graph(), &self.system);
         let mut written = self.written(model)?;
@@ -61,8 +61,8 @@ impl<'g> Assembly<'g> {
         Ok(coordinates.chain(eta).chain(states).collect())
     }
 
-    /// The start values of the text, of coordinates, declared quasi-velocities and first-order states; `None`
-    /// for those not given, or set to other values.
+    /// The start values of coordinates, declared quasi-velocities and first-order states in the text; `None`
+    /// for those that are not given or that were set to other values.
     fn written(&self, model: &Model) -> Result<Vec<Option<Expr<'g>>>, ModelError> {
         let document = model.document();
         let mut scope = Scope::new(self.system.graph(), document);

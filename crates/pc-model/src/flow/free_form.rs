@@ -1,4 +1,4 @@
-//! The equations of independent quasi-velocities, in the coordinates and quasi-velocities of a form.
+//! The equations in independent quasi-velocities, in the coordinates and quasi-velocities of a form.
 
 use pc_mech::{Equations, Expr, Graph, Matrix, MechError, Motion, QuasiVelocityChange, System, determinant};
 
@@ -8,7 +8,8 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::variables::Variables;
 
-/// A definition of a quasi-velocity is dependent if only this fraction is independent of the preceding ones.
+/// A definition of a quasi-velocity counts as dependent on the preceding ones if no more than this fraction
+/// of it is independent of them.
 const DEPENDENT: f64 = 1e-6;
 
 /// A system whose equations (9) are the equations of motion, with the relation between its quasi-velocities and those
@@ -17,24 +18,25 @@ const DEPENDENT: f64 = 1e-6;
 pub struct FreeForm<'g> {
     /// The system.
     pub system: System<'g>,
-    /// The independent quasi-velocities of the model from which it was made, k of them.
+    /// The k independent quasi-velocities of the model from which the form was made.
     pub independent: Vec<Expr<'g>>,
-    /// Each of these as a function of time, coordinates and the quasi-velocities of the system.
+    /// Each of the independent quasi-velocities as a function of time, coordinates and the quasi-velocities
+    /// of the system.
     pub values: Vec<Expr<'g>>,
     /// The quasi-velocities of the system as functions of time, coordinates and the independent ones.
     pub definitions: Vec<Expr<'g>>,
-    /// A of η' = A η, k × k; none if the quasi-velocities are those of the model.
+    /// The k × k matrix A in η' = A η; none if the quasi-velocities are those of the model.
     pub(crate) matrix: Option<Matrix<Expr<'g>>>,
 }
 
 impl<'g> FreeForm<'g> {
-    /// The form in the quasi-velocities of a system.
+    /// The form of a system in its own quasi-velocities.
     pub(crate) fn own(system: System<'g>) -> FreeForm<'g> {
         let eta = system.quasi_velocities().to_vec();
         FreeForm { independent: eta.clone(), values: eta.clone(), definitions: eta, matrix: None, system }
     }
 
-    /// All quasi-velocities of a system whose constraints have multipliers.
+    /// The form in all quasi-velocities of a system whose constraints have multipliers.
     pub(crate) fn all(assembly: &Assembly<'g>) -> FreeForm<'g> {
         FreeForm::own(assembly.system.clone())
     }
@@ -57,8 +59,8 @@ impl<'g> FreeForm<'g> {
 }
 
 impl<'g> Assembly<'g> {
-    /// The system of the independent quasi-velocities in the coordinates and quasi-velocities of these variables;
-    /// momenta are those of its quasi-velocities.
+    /// The system in independent quasi-velocities, with the coordinates and quasi-velocities of these variables;
+    /// for momenta, the quasi-velocities are those to which they belong.
     ///
     /// # Errors
     /// [`ModelError`] if there is no such form.
@@ -74,8 +76,8 @@ impl<'g> Assembly<'g> {
         }
     }
 
-    /// The equations of motion of the independent quasi-velocities in these variables, which must not be momenta, with
-    /// their definitions.
+    /// The equations of motion in independent quasi-velocities, in these variables, which must not be momenta, and the
+    /// form that defines the quasi-velocities.
     ///
     /// # Errors
     /// [`ModelError`] if there is no such form.
@@ -89,7 +91,7 @@ impl<'g> Assembly<'g> {
         Ok((self.placed(form.system.poincare())?, form))
     }
 
-    /// The system with observed reactions substituted.
+    /// The system with the observed reactions substituted.
     fn observed(&self, free: System<'g>) -> Result<System<'g>, ModelError> {
         match self.constraints.formulation() {
             ConstraintFormulation::Multipliers(_) => Ok(free.observing(self.equations()?.system())),
@@ -177,7 +179,8 @@ impl<'g> Assembly<'g> {
         self.document.error(&self.document.energy_place(), MeaningError::NoForm { message, help })
     }
 
-    /// Functions of time, coordinates, the quasi-velocities of a free system and parameters at the start.
+    /// The values at the start of functions of time, coordinates, the quasi-velocities of a free system and
+    /// parameters.
     fn numbers_at_start(&self, free: &System<'g>, functions: &[Expr<'g>]) -> Result<Vec<f64>, ModelError> {
         let at = [free.parameters(), &self.at_start()].concat();
         self.placed(free.graph().evaluate(functions, &at).map_err(MechError::from))
@@ -193,14 +196,14 @@ impl<'g> Assembly<'g> {
         Ok([self.start_of(form.system.frame().coordinates()), eta, self.start_of(&states)].concat())
     }
 
-    /// Whether the constraints do more than make quasi-velocities vanish.
+    /// Whether the constraints have multipliers, because they do more than make quasi-velocities vanish.
     pub fn has_multipliers(&self) -> bool {
         matches!(self.constraints.formulation(), ConstraintFormulation::Multipliers(_))
     }
 
-    /// Determinants, functions of time, coordinates and parameters, that vanish where the state of a form
-    /// does not determine velocities; `within_chart` watches them; none for a matrix of more than four
-    /// rows, whose determinant is not a short expression.
+    /// The determinants, as functions of time, coordinates and parameters, that vanish where the state of a
+    /// form does not determine the velocities; `within_chart` monitors them. `None` stands for the
+    /// determinant of a matrix of more than four rows, which is not a short expression.
     pub fn chart_determinants(&self, form: &FreeForm<'g>) -> Vec<Option<Expr<'g>>> {
         let (graph, frame, all) = (self.system.graph(), self.system.frame(), self.system.quasi_velocities());
         if form.system.frame().coordinates() != frame.coordinates() {
@@ -222,10 +225,10 @@ impl<'g> Assembly<'g> {
         determinants.filter(|value| !value.as_ref().is_some_and(is_fixed)).collect()
     }
 
-    /// A motion of a form that does not continue past a place where its state does not determine velocities.
+    /// The motion of a form, made to stop at states that do not determine the velocities.
     ///
     /// # Errors
-    /// [`ModelError`], which does not occur for a form of this system.
+    /// [`ModelError`]; it does not occur for a form of this system.
     pub(crate) fn within_chart(&self, motion: Motion, form: &FreeForm<'g>) -> Result<Motion, ModelError> {
         let all = self.system.quasi_velocities();
         if form.system.frame().coordinates() != self.system.frame().coordinates() {
@@ -256,7 +259,7 @@ impl<'g> Assembly<'g> {
     }
 }
 
-/// The columns of the matrix of constraints that belong to quasi-velocities other than the independent ones.
+/// The columns of the constraint matrix that belong to the dependent quasi-velocities.
 fn dependent_columns<'g>(
     c: &Matrix<Expr<'g>>,
     all: &[Expr<'g>],
@@ -266,8 +269,8 @@ fn dependent_columns<'g>(
     Matrix::from_fn(c.rows(), dependent.len(), |a, d| c[(a, dependent[d])])
 }
 
-/// A determinant up to its sign, after elimination of rows and columns with one entry; `None` if more than
-/// four rows remain.
+/// A determinant up to its sign, after elimination of rows and columns with a single entry; `None` if more
+/// than four rows remain.
 fn short_determinant<'g>(graph: &'g Graph, square: &Matrix<Expr<'g>>) -> Option<Expr<'g>> {
     let (mut rows, mut columns): (Vec<usize>, Vec<usize>) =
         ((0..square.rows()).collect(), (0..square.columns()).collect());
@@ -288,8 +291,8 @@ fn short_determinant<'g>(graph: &'g Graph, square: &Matrix<Expr<'g>>) -> Option<
     Some(factors.into_iter().fold(rest, |product, factor| product * factor))
 }
 
-/// Rows of derivatives in units of the quasi-velocities in which the largest of each column is 1: r' + r φ' does not depend on
-/// r', however small r is.
+/// Rows of derivatives in units of the quasi-velocities for which the largest entry of each column is 1, so that r' + r φ'
+/// does not count as dependent on r', however small r is.
 fn in_alike_units(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let largest = |s: usize| rows.iter().fold(0.0f64, |most, row| most.max(row[s].abs()));
     let unit = |s: usize| Some(largest(s)).filter(|&most| most > 0.0).unwrap_or(1.0);
@@ -297,7 +300,8 @@ fn in_alike_units(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     rows.iter().map(in_units).collect()
 }
 
-/// The part of a row orthogonal to the known ones, all of length one, and its size relative to the row.
+/// The part of a row that is orthogonal to the known rows, which all have length one, and its size relative
+/// to the row.
 fn rest(known: &[Vec<f64>], row: &[f64]) -> (Vec<f64>, f64) {
     let size = |row: &[f64]| row.iter().fold(0.0f64, |size, entry| size.hypot(*entry));
     let mut rest = row.to_vec();

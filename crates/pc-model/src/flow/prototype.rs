@@ -1,4 +1,4 @@
-//! Equations compiled once for many values of parameters and start.
+//! Equations compiled once for many values of the parameters and the start.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -10,13 +10,13 @@ use crate::flow::flow::Flow;
 use crate::model::model::Model;
 use crate::variables::Variables;
 
-/// If a projection moves each component of a start by at most this fraction, the start satisfies the constraints up to the
-/// rounding of its digits; it is a tenth of the distance at which a model is refused.
+/// If projection moves each component of a start by at most this fraction, the start satisfies the constraints up to the
+/// rounding of its digits. The fraction is a tenth of the one at which a model is refused.
 const ON_CONSTRAINTS: f64 = 1e-9;
-/// A component may also move by this fraction of the largest: the rounding of the projection.
+/// A component may also move by this fraction of the largest one: the rounding error of the projection.
 const ROUNDING: f64 = 1e-14;
 
-/// The equations of a model compiled once, for models that differ only in numbers.
+/// The equations of a model, compiled once for all models that differ from it only in numbers.
 #[derive(Debug)]
 pub struct Prototype {
     flow: Mutex<Flow>,
@@ -27,7 +27,7 @@ pub struct Prototype {
 }
 
 impl Prototype {
-    /// As [`of`](Prototype::of); also none if the model has no equations of motion.
+    /// As for [`of`](Prototype::of); also none if the model has no equations of motion.
     pub fn new(model: &Model, variables: Variables) -> Option<Prototype> {
         let prototype = |assembly: &Assembly<'_>| {
             Ok(Prototype::of(model, assembly, variables, Flow::new(model, assembly, variables)?))
@@ -36,8 +36,8 @@ impl Prototype {
     }
 
     /// The prototype of a flow of the model in these variables. None if the equations may depend on the start or on
-    /// the values of the parameters (momenta solved for velocities near the start, or constraints left out because
-    /// they follow from others), or if the start has to be solved for.
+    /// the values of the parameters (because momenta are solved for velocities near the start, or redundant
+    /// constraints are left out), or if the start has to be solved for.
     pub fn of(model: &Model, assembly: &Assembly<'_>, variables: Variables, flow: Flow) -> Option<Prototype> {
         let own =
             variables == Variables::QuasiVelocities && !model.projects_start() && !model.derives_start();
@@ -51,8 +51,8 @@ impl Prototype {
         Some(Prototype { flow: Mutex::new(flow), places, vanishing })
     }
 
-    /// The equations with the values of a model of the same text, at its start at time `t`; none if something
-    /// about it needs closer examination, by [`Flow::new`].
+    /// The equations with the values of a model that has the same text, at its start at time `t`; none if
+    /// something about this model has to be examined more closely, by [`Flow::new`].
     pub fn flow(&self, model: &Model, t: f64) -> Option<Flow> {
         let values = model.start().ok()?;
         let start: Vec<f64> =

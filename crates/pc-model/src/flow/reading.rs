@@ -1,4 +1,4 @@
-//! States converted to coordinates, all quasi-velocities and first-order states of a model.
+//! Converts states to coordinates, all quasi-velocities and first-order states of a model.
 
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program, SymbolPlaces};
 use pc_mech::{LegendreTransform, MechError, System};
@@ -14,32 +14,32 @@ pub(super) struct Reading {
     pub(super) coordinates: usize,
     /// All quasi-velocities of the model, the declared ones first, as functions of (t, x, η, z) with the free η.
     pub(super) quasi_velocities: Evaluator,
-    /// The indices of the free ones.
+    /// The indices of the free quasi-velocities.
     pub(super) free: Vec<usize>,
     pub(super) parameters: Vec<f64>,
     /// The conversion of momenta to quasi-velocities, if the state has momenta.
     pub(super) transform: Option<LegendreTransform>,
-    /// Storage for a state in quasi-velocities.
+    /// Storage space for a state in quasi-velocities.
     pub(super) room: Vec<f64>,
-    /// The change of quasi-velocities, if those of the state are not the model's.
+    /// The change of quasi-velocities, if those of the state are not those of the model.
     change: Option<Change>,
 }
 
 /// Quasi-velocities of a state that are not those of the model.
 #[derive(Clone, Debug)]
 struct Change {
-    /// Their values as functions of (t, x, η, z) with the free η.
+    /// The values of these quasi-velocities as functions of (t, x, η, z) with the free η.
     written: Evaluator,
     /// The rates of all quasi-velocities of the model as functions of (t, x, η', z, η̇').
     rates: Evaluator,
 }
 
 impl Reading {
-    /// The reading of states of a form, in which `all` quasi-velocities are functions of its independent
-    /// ones.
+    /// The conversion of the states of a form, where `all` quasi-velocities are given as functions of the
+    /// independent ones.
     ///
     /// # Errors
-    /// [`ModelError`] for a symbol without a value.
+    /// [`ModelError`] if a symbol has no value.
     pub(super) fn new<'g>(
         assembly: &Assembly<'g>,
         form: &FreeForm<'g>,
@@ -84,7 +84,7 @@ impl Reading {
         })
     }
 
-    /// Whether the state has quasi-velocities that are not the model's.
+    /// Whether the quasi-velocities of the state are not those of the model.
     pub(super) fn is_changed(&self) -> bool {
         self.change.is_some()
     }
@@ -95,8 +95,8 @@ impl Reading {
         self.transform.is_none() && self.change.is_none() && self.free.iter().copied().eq(0..all)
     }
 
-    /// The rates of all quasi-velocities of the model at a state with these rates; `None` if the state has
-    /// quasi-velocities of the model.
+    /// The rates of all quasi-velocities of the model at a state that changes at these rates; `None` if the
+    /// quasi-velocities of the state are those of the model.
     pub(super) fn rates(&mut self, t: f64, state: &[f64], rates: &[f64]) -> Option<Vec<f64>> {
         let change = self.change.as_mut()?;
         let moving = self.coordinates..self.coordinates + self.free.len();
@@ -106,20 +106,20 @@ impl Reading {
         Some(values)
     }
 
-    /// (x, η, z) with all η of a state.
+    /// The (x, η, z), with all η, of a state.
     ///
     /// # Errors
-    /// [`MechError`] if no quasi-velocities have the momenta.
+    /// [`MechError`] if no quasi-velocities give these momenta.
     pub(super) fn read(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, MechError> {
         let mut all = Vec::new();
         self.read_in(t, state, &mut all)?;
         Ok(all)
     }
 
-    /// Writes (x, η, z) with all η to `all`.
+    /// Writes the (x, η, z), with all η, of a state to `all`.
     ///
     /// # Errors
-    /// As [`read`](Reading::read).
+    /// As for [`read`](Reading::read).
     pub(super) fn read_in(&mut self, t: f64, state: &[f64], all: &mut Vec<f64>) -> Result<(), MechError> {
         let Some(transform) = &mut self.transform else {
             self.complete(t, state, all);
@@ -135,7 +135,7 @@ impl Reading {
         outcome
     }
 
-    /// Writes to `all` the (x, η, z) with all η, from one with the free η.
+    /// Writes to `all` the (x, η, z) with all η that belongs to one with only the free η.
     pub(super) fn complete(&mut self, t: f64, free: &[f64], all: &mut Vec<f64>) {
         let n = self.coordinates;
         all.clear();
@@ -145,7 +145,7 @@ impl Reading {
         all.extend_from_slice(&free[n + self.free.len()..]);
     }
 
-    /// The state that belongs to an (x, η, z) with all η.
+    /// The state that corresponds to an (x, η, z) with all η.
     ///
     /// # Errors
     /// [`MechError`] if the quasi-velocities have no momenta.
@@ -166,7 +166,7 @@ impl Reading {
         }
     }
 
-    /// Gives the parameters other values.
+    /// Gives the parameters new values.
     pub(super) fn set_parameters(&mut self, parameters: &[f64]) {
         self.parameters.copy_from_slice(parameters);
         if let Some(transform) = &mut self.transform {
@@ -174,7 +174,7 @@ impl Reading {
         }
     }
 
-    /// Values of the parameters, to be changed.
+    /// The values of the parameters, which can be changed.
     pub(super) fn parameters_mut(&mut self) -> &mut [f64] {
         &mut self.parameters
     }

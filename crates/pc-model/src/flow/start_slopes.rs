@@ -1,4 +1,4 @@
-//! Derivatives by parameters of a start, and of the columns of a table.
+//! Derivatives of a start, and of the columns of a table, with respect to parameters.
 
 use crate::assembly::assembly::Assembly;
 use crate::diagnostics::error::ModelError;
@@ -6,22 +6,23 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::flow::flow::Flow;
 use crate::model::model::Model;
 
-/// The step of a central difference, as a fraction of the size of a parameter, that is accurate to ten
-/// digits: truncation and rounding errors are equal.
+/// The step for a central difference with respect to a parameter of this value. It makes truncation and
+/// rounding errors equal, so that the difference is accurate to ten digits.
 fn step(value: f64) -> f64 {
     let size = if value == 0.0 { 1.0 } else { value.abs() };
     f64::EPSILON.cbrt() * size
 }
 
 impl Flow {
-    /// ∂y₀/∂pⱼ of this flow of a model for number j of the [parameters](Model::parameters), the start of a column of
-    /// sensitivities, by central differences of starts: these may be expressions in parameters, or moved to constraints that
-    /// have parameters. No equation is derived for it.
+    /// The derivative ∂y₀/∂pⱼ of the start of this flow of a model with respect to number j of the
+    /// [parameters](Model::parameters): the start of a column of sensitivities. It is a central difference of starts, since
+    /// these may be expressions in parameters or may be moved onto constraints that contain parameters. No equation is
+    /// derived for this.
     ///
     /// # Errors
     /// [`ModelError`] if the model has no start for nearby values of the parameter, for example because the start
-    /// does not follow constraints that depend on it; for an input with a table; and for a parameter that follows
-    /// others.
+    /// is not moved onto constraints that depend on it; for an input with a table; and for a parameter given by
+    /// an expression in others.
     ///
     /// # Panics
     /// If there is no such parameter.
@@ -73,9 +74,9 @@ impl Flow {
         assembly.placed(flow.state_of(assembly.t_start, &all))
     }
 
-    /// The derivatives of the columns [`names`](Flow::names), coordinates, quasi-velocities and first-order states, of
-    /// a state that moves along `column` with parameter number j. Those that are not components of the state are
-    /// central differences, accurate to ten digits.
+    /// The derivatives with respect to parameter number j of the columns [`names`](Flow::names), which are
+    /// coordinates, quasi-velocities and first-order states, for a state whose own derivative is `column`. The
+    /// derivatives of columns that are not components of the state are central differences, accurate to ten digits.
     ///
     /// # Panics
     /// If there is no such parameter, or `column` does not have the length of the state.

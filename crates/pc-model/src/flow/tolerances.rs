@@ -1,31 +1,31 @@
-//! Absolute tolerances by the scale of each component of the state.
+//! Absolute tolerances that depend on the scale of each component of the state.
 
 use pc_mech::VectorField;
 
 use crate::document::tolerance::AbsoluteTolerance;
 use crate::flow::flow::Flow;
 
-/// The absolute tolerance of components of ordinary scale.
+/// The absolute tolerance of components whose scale is ordinary.
 pub const ORDINARY_TOLERANCE: f64 = 1e-12;
 
-/// The tolerance relative to the largest component: the rounding of its terms in the rates of the others,
-/// against which shorter steps do not help.
+/// The smallest tolerance, relative to the largest component: terms of this component in the rates of the
+/// others have a rounding error that shorter steps cannot reduce.
 const LEAST: f64 = 1e-16;
 
-/// A start value below this fraction of the largest may be nothing but its rounding, such as cos(π/2), and
+/// A start value below this fraction of the largest may be nothing but rounding error, such as cos(π/2), and
 /// counts as zero.
 const ZERO: f64 = 1e-13;
-/// So may a rate below this fraction of the largest.
+/// A rate below this fraction of the largest also counts as zero.
 const AT_REST: f64 = 1e-9;
 
 impl Flow {
-    /// The absolute tolerance of each component of the state: the one given, else
+    /// The absolute tolerance of each component of the state: the given one, otherwise
     /// ```text
     /// atolᵢ = min(1e-12, max(rtol sᵢ, 1e-16 s)),      sᵢ = |yᵢ| or τ |ẏᵢ|,      s = max |yᵢ|,      τ = s / max |ẏᵢ|
     /// ```
-    /// at the start: sᵢ is |yᵢ|, or τ |ẏᵢ| for a component that starts at zero, or s if that one is also at rest. So a component that
-    /// begins at 1e-9 has as many digits as one that begins at 1, in whatever units, as far as rounding relative to larger ones
-    /// allows. Where the whole state starts at zero, τ is the time span.
+    /// at the start. Here sᵢ is |yᵢ|, or τ |ẏᵢ| for a component that starts at zero, or s if its rate is zero too. So a component
+    /// that begins at 1e-9 is computed to as many digits as one that begins at 1, in whatever units, as far as rounding errors of the
+    /// larger components allow. If the whole state starts at zero, τ is the time span.
     pub fn absolute_tolerances(
         &mut self,
         given: &AbsoluteTolerance,

@@ -1,15 +1,15 @@
-//! Errors in a file of another format, shown like those of a model.
+//! Errors in a file of another format, which are shown like those in a model.
 
 use std::ops::Range;
 
 use crate::diagnostics::error::Diagnostic;
 use crate::diagnostics::source::{Place, Source};
 
-/// An element of a URDF file that is wrong, or cannot be part of a model.
+/// An element of a URDF file that is invalid, or cannot be part of a model.
 #[derive(Clone, Debug, thiserror::Error)]
 #[error("{rendered}")]
 pub struct UrdfError {
-    /// File, line and column, the message, the line and a remedy.
+    /// The text of the error: file, line and column, the message, the line and a remedy.
     pub rendered: String,
 }
 

@@ -6,23 +6,24 @@ use pc_expr::parse::{FUNCTIONS, is_name};
 
 use crate::import::robot::{Joint, Kind, Link};
 
-/// The suffixes of the coordinates and velocities of a body, if its joint has several of them.
+/// The suffixes of the names of a body's coordinates and velocities, if its joint has several of them.
 const PLANAR: [&str; 3] = ["x'", "y'", "φ'"];
 const FLOATING: [&str; 6] = ["v1", "v2", "v3", "ω1", "ω2", "ω3"];
 const OF_COORDINATES: [&str; 8] = ["x", "y", "z", "φ", "q0", "q1", "q2", "q3"];
 
-/// The names of a robot: those of links and joints, changed if they are not names of the language or are taken.
+/// The names in the model of a robot: those of links and joints, changed if they are not valid names or are
+/// taken.
 pub(crate) struct Names<'a> {
     /// The names of the bodies of links.
     bodies: HashMap<&'a str, String>,
-    /// The names of the coordinates of joints with one.
+    /// The names of the coordinates of joints that have exactly one.
     coordinates: HashMap<&'a str, String>,
-    /// The names of the parameters of damping, by the joints that have one.
+    /// The names of the damping parameters, for the joints that have one.
     dampings: HashMap<&'a str, String>,
 }
 
 impl<'a> Names<'a> {
-    /// The names of links with the joints that they hang on; the first is the root.
+    /// The names for links, each with the joint by which it is attached; the first link is the root.
     pub(crate) fn of(order: &[(&'a Link, Option<&'a Joint>)]) -> Names<'a> {
         let mut taken: HashSet<String> =
             HashSet::from(["world", "t", "pi", "energy", "g"].map(str::to_owned));
@@ -54,22 +55,22 @@ impl<'a> Names<'a> {
         names
     }
 
-    /// The body of a link.
+    /// The name of the body of a link.
     pub(crate) fn body(&self, link: &str) -> &str {
         &self.bodies[link]
     }
 
-    /// The coordinate of a joint, if it has exactly one.
+    /// The name of the coordinate of a joint, if it has exactly one.
     pub(crate) fn coordinate(&self, joint: &Joint) -> Option<&str> {
         self.coordinates.get(joint.name.as_str()).map(String::as_str)
     }
 
-    /// The parameter of the damping of a joint, if it has any.
+    /// The name of the damping parameter of a joint, if it has one.
     pub(crate) fn damping(&self, joint: &Joint) -> Option<&str> {
         self.dampings.get(joint.name.as_str()).map(String::as_str)
     }
 
-    /// The velocities of a joint.
+    /// The names of the velocities of a joint.
     pub(crate) fn velocities(&self, joint: &Joint) -> Vec<String> {
         let of_body = |velocities: &[&str]| {
             let body = self.body(&joint.child);
@@ -84,8 +85,8 @@ impl<'a> Names<'a> {
     }
 }
 
-/// The name, with invalid characters replaced, and extended if it, or a name `NAME_ENDING` that begins with
-/// it, is taken.
+/// The name with invalid characters replaced, and extended if it is taken, or if a name `NAME_ENDING` formed
+/// from it is.
 fn unused(name: &str, endings: &[&str], taken: &mut HashSet<String>) -> String {
     let mut own: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     if !is_name(&own) {

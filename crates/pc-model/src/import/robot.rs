@@ -8,7 +8,7 @@ pub(crate) struct Robot {
     pub(crate) name: String,
     pub(crate) links: Vec<Link>,
     pub(crate) joints: Vec<Joint>,
-    /// Elements that a model cannot contain, each with how often it occurs.
+    /// Kinds of elements that a model cannot contain, each with the number of times that it occurs.
     pub(crate) left_out: Vec<(String, usize)>,
 }
 
@@ -22,7 +22,7 @@ pub(crate) struct Link {
     pub(crate) meshes: Vec<String>,
 }
 
-/// Mass, mass centre and inertia of a link.
+/// The mass, mass centre and inertia of a link.
 #[derive(Clone, Debug)]
 pub(crate) struct Inertial {
     pub(crate) origin: Pose,
@@ -31,7 +31,7 @@ pub(crate) struct Inertial {
     pub(crate) inertia: [f64; 6],
 }
 
-/// A position, and turns by roll, pitch and yaw about fixed axes x, y and z.
+/// A position, and rotations by roll, pitch and yaw about the fixed axes x, y and z.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Pose {
     pub(crate) xyz: [f64; 3],
@@ -66,7 +66,7 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    /// The kinds by their names.
+    /// The kinds, each with its name in URDF.
     pub(crate) const ALL: [(&'static str, Kind); 6] = [
         ("fixed", Kind::Fixed),
         ("revolute", Kind::Revolute),
@@ -76,13 +76,13 @@ impl Kind {
         ("planar", Kind::Planar),
     ];
 
-    /// Whether one coordinate moves it.
+    /// Whether the joint has exactly one coordinate.
     pub(crate) fn is_single(self) -> bool {
         matches!(self, Kind::Revolute | Kind::Continuous | Kind::Prismatic)
     }
 }
 
-/// A joint that follows another one: x = multiplier · other + offset.
+/// The dependence of a joint on another one: x = multiplier · other + offset.
 #[derive(Clone, Debug)]
 pub(crate) struct Mimic {
     pub(crate) joint: String,

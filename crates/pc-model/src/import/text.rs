@@ -1,4 +1,4 @@
-//! From a robot to the text of a model.
+//! Writes a robot as the text of a model.
 
 use std::collections::HashSet;
 use std::fmt::Write;
@@ -10,13 +10,13 @@ use crate::import::names::Names;
 use crate::import::robot::{Inertial, Joint, Kind, Link, Mimic, Pose, Robot};
 use crate::import::urdf;
 
-/// The text of the model of a robot in URDF, and what was left out of it, one line each.
+/// The text of the model of a robot in URDF, and a line for each kind of element that was left out.
 ///
-/// Bodies have the names of links, coordinates those of joints, changed if they are not names of
-/// the language; the root link is fixed, or free if `floats`. Limits and meshes become comments.
+/// Bodies have the names of links, and coordinates those of joints, changed if they are not valid names; the
+/// root link is fixed, or free if `floats` is set. Limits and meshes become comments.
 ///
 /// # Errors
-/// [`UrdfError`] with file, line and column.
+/// [`UrdfError`], which gives the file, line and column.
 pub fn model_of_urdf(source: &Source, floats: bool) -> Result<(String, Vec<String>), UrdfError> {
     let robot = urdf::read(source)?;
     let tree = Tree::of(source, &robot)?;
@@ -29,7 +29,7 @@ pub fn model_of_urdf(source: &Source, floats: bool) -> Result<(String, Vec<Strin
 struct Tree<'a> {
     source: &'a Source,
     robot: &'a Robot,
-    /// Links, each after its parent, with the joint between them.
+    /// The links, each after its parent, with the joint between the two.
     order: Vec<(&'a Link, Option<&'a Joint>)>,
     names: Names<'a>,
 }
@@ -101,7 +101,7 @@ impl<'a> Tree<'a> {
         Ok(Tree { source, robot, order, names })
     }
 
-    /// An error unless everything that moves has mass, or follows something with mass: a joint that mimics
+    /// An error unless everything that moves has mass, or mimics something that has: a joint that mimics
     /// another needs no mass of its own.
     fn check_masses(&self) -> Result<(), UrdfError> {
         let mut carries: HashSet<&str> = HashSet::new();
@@ -128,7 +128,7 @@ impl<'a> Tree<'a> {
         Ok(())
     }
 
-    /// The start values of joints that follow others; the others start at 0.
+    /// The start values of joints that mimic others; all other joints start at 0.
     fn starts(&self) -> Result<Vec<(&'a Joint, f64)>, UrdfError> {
         let mut starts = Vec::new();
         for first in
@@ -313,7 +313,7 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// An angle, as a multiple of a quarter turn if it is one up to the digits of a file.
+/// An angle, written as a multiple of a quarter turn if it is one to the precision of numbers in a file.
 fn angle(angle: f64) -> String {
     let quarters = (angle / std::f64::consts::FRAC_PI_2).round();
     if quarters != 0.0 && (angle - quarters * std::f64::consts::FRAC_PI_2).abs() <= 1e-10 {
@@ -336,8 +336,8 @@ fn list(numbers: &[f64]) -> String {
     format!("[{}]", numbers.join(", "))
 }
 
-/// R I Rᵀ, with R the rotation of the inertial's origin: only the three moments if the products
-/// vanish.
+/// The inertia matrix R I Rᵀ, where R is the rotation of the inertial's origin; only the three moments if the
+/// products of inertia vanish.
 fn along_axes_of_the_link(inertial: &Inertial) -> Vec<f64> {
     let [xx, yy, zz, xy, yz, xz] = inertial.inertia;
     let own = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];

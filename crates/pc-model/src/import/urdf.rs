@@ -1,4 +1,4 @@
-//! From the text of a URDF file to a robot.
+//! Reads the text of a URDF file as a robot.
 
 use std::ops::Range;
 
@@ -11,7 +11,7 @@ use crate::import::robot::{Inertial, Joint, Kind, Link, Mimic, Pose, Robot};
 /// Reads a robot.
 ///
 /// # Errors
-/// [`UrdfError`] at the first element or attribute that is wrong.
+/// [`UrdfError`] at the first invalid element or attribute.
 pub(crate) fn read(source: &Source) -> Result<Robot, UrdfError> {
     let text = source.text();
     let document = Document::parse(text).map_err(|error| {
@@ -45,7 +45,7 @@ impl Reader<'_> {
         self.error(self.tag(node), node, message.into(), help)
     }
 
-    /// The bytes of `<name` of an element.
+    /// The bytes of the `<name` with which an element begins.
     fn tag(&self, node: Node<'_, '_>) -> Range<usize> {
         let range = node.range();
         let tag = self.source.text()[range.clone()].find(['>', '/', ' ', '\n', '\t']).unwrap_or(1);
@@ -262,7 +262,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Three numbers separated by spaces; none without the attribute.
+    /// Three numbers separated by spaces; none if the attribute is missing.
     fn vector(&self, node: Node<'_, '_>, key: &str) -> Result<Option<[f64; 3]>, UrdfError> {
         let Some(text) = node.attribute(key) else { return Ok(None) };
         let numbers: Result<Vec<f64>, _> = text.split_whitespace().map(str::parse::<f64>).collect();

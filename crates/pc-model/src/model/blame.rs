@@ -13,8 +13,8 @@ use crate::diagnostics::source::Place;
 use crate::document::{AlgebraDefinition, Bracket, Constraint, Document};
 
 impl Document {
-    /// Does some work in a graph. If its budget is spent before or during the work, the result is that
-    /// error, whatever the work returns.
+    /// Runs `work` in a graph. If the graph's budget is spent before or during it, the result is an error
+    /// that says so, whatever `work` returns.
     pub(crate) fn stage<T>(
         &self,
         graph: &Graph,
@@ -86,7 +86,7 @@ impl Document {
         self.constraints.iter().find(|constraint| constraint.name.text == name)
     }
 
-    /// An error of a constraint, at its expression.
+    /// An error about a constraint, located at its expression.
     pub(crate) fn constraint_fault(&self, name: &str, fault: MeaningError) -> ModelError {
         let expression = self.constraint_text(name).map(|constraint| &constraint.expression);
         let place = expression.map(|expression| expression.place(expression.ast.span));
@@ -134,7 +134,8 @@ impl Document {
         self.source.error(place, kind)
     }
 
-    /// The place where an integral is requested to be kept; its definition if the request is not in the file.
+    /// The place in the file where an integral is requested to be kept; its definition if the request is not
+    /// in the file.
     pub(crate) fn kept_place(&self, name: &str) -> Place {
         let written = self.simulation.project.iter().find(|written| written.value == name);
         let integral = || self.integrals.iter().find(|integral| integral.name.text == name);
@@ -150,7 +151,7 @@ impl Document {
         place.cloned().unwrap_or_else(|| document.end())
     }
 
-    /// The name of operator number s, from 1; 0 is time.
+    /// The name of operator number s, counted from 1; 0 stands for time.
     fn operator_name(&self, s: usize) -> String {
         let declared = &self.quasi_velocities;
         match (s, declared.is_empty()) {

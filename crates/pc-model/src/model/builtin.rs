@@ -19,7 +19,7 @@ macro_rules! models {
     };
 }
 
-/// Models that come with the library, one of each kind of mechanics.
+/// Models that come with the library, one for each kind of mechanics.
 pub const BUILTIN: &[Builtin] = models![
     "heavy-top-lagrange",
     "heavy-top-kovalevskaya",
@@ -73,7 +73,8 @@ pub const BUILTIN: &[Builtin] = models![
     "appell-hamel",
 ];
 
-/// Further models that come with the library, of bodies on joints: larger ones, whose equations fill pages.
+/// Further models that come with the library: larger ones, made of bodies on joints, whose equations fill
+/// pages.
 pub const TREES: &[Builtin] = models![
     "puma-560",
     "four-bar-loop",
@@ -84,7 +85,7 @@ pub const TREES: &[Builtin] = models![
     "stewart-platform",
 ];
 
-/// Further models that come with the library: classical motions about which books are written.
+/// Further models that come with the library: classical motions on which books have been written.
 pub const CLASSICS: &[Builtin] = models![
     "foucault-pendulum",
     "kapitza-pendulum",
@@ -112,7 +113,7 @@ impl Builtin {
         BUILTIN.iter().chain(TREES).chain(CLASSICS)
     }
 
-    /// The model of that name.
+    /// The built-in model with this name.
     pub fn named(name: &str) -> Option<&'static Builtin> {
         Builtin::all().find(|model| model.name == name)
     }
@@ -120,7 +121,7 @@ impl Builtin {
     /// Its document.
     ///
     /// # Errors
-    /// [`ModelError`], which the tests rule out.
+    /// [`ModelError`]; the tests make sure that it does not occur.
     pub fn document(&self) -> Result<Document, ModelError> {
         Document::parse(Source::new(format!("{}.toml", self.name), self.text))
     }

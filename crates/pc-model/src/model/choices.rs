@@ -1,4 +1,4 @@
-//! Requests in addition to the text: other quasi-velocities, independent ones.
+//! Requests made in addition to the text: other quasi-velocities, and a choice of independent ones.
 
 use crate::diagnostics::error::ModelError;
 use crate::model::given::GivenQuasiVelocity;
@@ -6,9 +6,10 @@ use crate::model::model::Model;
 
 impl Model {
     /// Gives a quasi-velocity in addition to those of the text, as a linear form in the velocities x' and
-    /// quasi-velocities of the model, for equations in [given ones](crate::Variables::Given). If fewer are given
-    /// than there are independent ones, quasi-velocities of the model complete them, each time the one that is least
-    /// determined so far at the start. Each is also an output.
+    /// quasi-velocities of the model, for equations in [given quasi-velocities](crate::Variables::Given). If fewer
+    /// are given than there are independent ones, quasi-velocities of the model complete them; each time, the one
+    /// that is least determined at the start by those already chosen is taken. Each given quasi-velocity is also an
+    /// output.
     ///
     /// ```
     /// use pc_mech::Graph;
@@ -39,7 +40,7 @@ impl Model {
         Ok(())
     }
 
-    /// Removes the quasi-velocities given by `[simulation]` of the text or by earlier calls.
+    /// Removes the quasi-velocities given in the section `[simulation]` of the text or by earlier calls.
     pub fn give_no_quasi_velocities(&mut self) {
         self.given.clear();
     }
@@ -49,9 +50,9 @@ impl Model {
         &self.given
     }
 
-    /// Chooses these velocities as the independent ones of equations in which multipliers are eliminated:
-    /// quasi-velocities of the model, or velocities x' for the forms in these. Without names, those whose
-    /// equations are shortest are chosen.
+    /// Chooses these velocities as the independent ones in equations from which multipliers are eliminated:
+    /// quasi-velocities of the model, or velocities x' for forms in terms of these. Without names, those
+    /// whose equations are shortest are chosen.
     pub fn choose_independent<S: Into<String>>(&mut self, names: impl IntoIterator<Item = S>) {
         self.independent = names.into_iter().map(Into::into).collect();
     }

@@ -8,7 +8,8 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::source::{Place, Source};
 use crate::document::{Document, Expression, Name};
 
-/// A quasi-velocity with its definition, a linear form in the velocities of a model or its quasi-velocities.
+/// A quasi-velocity with its definition, which is a linear form in the velocities or quasi-velocities of a
+/// model.
 #[derive(Clone, Debug)]
 pub struct GivenQuasiVelocity {
     pub(crate) name: String,
@@ -17,7 +18,7 @@ pub struct GivenQuasiVelocity {
 }
 
 impl GivenQuasiVelocity {
-    /// The quasi-velocity with a name and the text of its definition.
+    /// Makes a quasi-velocity from a name and the text of its definition.
     ///
     /// # Errors
     /// [`ModelError`] if the name is invalid or taken, or the text is not an expression.

@@ -1,4 +1,4 @@
-//! A document with the values of its parameters, and the settings of its derivation.
+//! A document with the values of its parameters, and the settings for deriving its equations.
 
 use std::sync::Arc;
 
@@ -14,10 +14,10 @@ use crate::model::given::GivenQuasiVelocity;
 pub struct Model {
     document: Arc<Document>,
     parameters: Parameters,
-    /// Start values other than those of the document, by their indices.
+    /// Start values that replace those of the document, each with its index.
     starts: Vec<(usize, f64)>,
     projects_start: bool,
-    /// The indices of start values that stay unmoved.
+    /// The indices of start values that stay fixed when the start is moved onto constraints.
     held_starts: Vec<usize>,
     observes_reactions: bool,
     /// Whether motions and events are to be differentiated with respect to parameters.
@@ -25,7 +25,7 @@ pub struct Model {
     by_time: bool,
     /// The names of the integrals to be kept.
     kept: Vec<String>,
-    /// The limits of its derivations.
+    /// The limits on derivations from this model.
     budget: Budget,
     /// The quasi-velocities, or coordinates, on which external forces act.
     pub(crate) external: Vec<String>,
@@ -76,7 +76,7 @@ impl Model {
         }
     }
 
-    /// Limits the memory and time of all further derivations of this model and its clones together.
+    /// Limits the memory and time that all further derivations of this model and its clones may use together.
     pub fn limit(&mut self, limits: Limits) {
         self.budget = Budget::new(limits);
     }
@@ -86,17 +86,17 @@ impl Model {
         self.budget = budget;
     }
 
-    /// The remainder of the limits.
+    /// What is left of the limits.
     pub fn budget(&self) -> &Budget {
         &self.budget
     }
 
-    /// An empty graph within the limits of the model, to derive its equations in.
+    /// An empty graph, subject to the limits of the model, in which to derive its equations.
     pub fn graph(&self) -> Graph {
         Graph::new().within(&self.budget)
     }
 
-    /// The document it was made from.
+    /// The document from which the model was made.
     pub fn document(&self) -> &Document {
         &self.document
     }
@@ -105,17 +105,17 @@ impl Model {
         Arc::clone(&self.document)
     }
 
-    /// The name given in the model, else the name of its file.
+    /// The name given in the text, or else the name of the file.
     pub fn title(&self) -> &str {
         let name = self.document.model.name.as_ref();
         name.map_or_else(|| self.document.source.name(), |name| name.value.as_str())
     }
 
-    /// Sets a parameter, or an input that has no table, to another value than that of the file. Parameters that are
-    /// expressions in it follow; one that is itself an expression becomes a number.
+    /// Sets a parameter, or an input that has no table, to a value other than that in the file. Parameters that are
+    /// expressions in it are updated; one that is itself an expression becomes a number.
     ///
     /// # Errors
-    /// [`UnknownParameter`] with the existing parameters.
+    /// [`UnknownParameter`], which lists the existing parameters.
     pub fn set(&mut self, name: &str, value: f64) -> Result<(), UnknownParameter> {
         let known =
             |&(place, (known, _)): &(usize, (&str, f64))| known == name && !self.parameters.is_table(place);
@@ -132,12 +132,12 @@ impl Model {
         self.parameters().enumerate().filter(is_set).map(|(_, (name, _))| name.to_owned()).collect()
     }
 
-    /// Gives number `place` of the parameters and inputs another value.
+    /// Gives the parameter or input with index `place` another value.
     pub(crate) fn set_parameter(&mut self, place: usize, value: f64) {
         self.parameters.set(place, value);
     }
 
-    /// The place in the file of number `place` of the parameters and inputs.
+    /// The place in the file of the parameter or input with index `place`.
     pub(crate) fn parameter_place(&self, place: usize) -> Place {
         let parameters = self.document.parameters.iter().map(|p| &p.name);
         let mut names = parameters.chain(self.document.inputs.iter().map(|input| &input.name));
@@ -156,7 +156,7 @@ impl Model {
         &self.parameters
     }
 
-    /// The names of the integrals that the motion is projected to.
+    /// The names of the integrals that the motion keeps by projection.
     pub fn kept(&self) -> &[String] {
         &self.kept
     }
@@ -164,7 +164,7 @@ impl Model {
     /// Keeps an integral, or `energy`, at its value at the start, by projection.
     ///
     /// # Errors
-    /// [`UnknownIntegral`] with the existing integrals.
+    /// [`UnknownIntegral`], which lists the existing integrals.
     pub fn keep(&mut self, name: &str) -> Result<(), UnknownIntegral> {
         let integrals = self.document.integrals.iter().map(|integral| integral.name.text.as_str());
         let known: Vec<&str> = integrals.chain(["energy"]).collect();
@@ -183,7 +183,7 @@ impl Model {
         self.projects_start = yes;
     }
 
-    /// Holds start value number `place` unmoved.
+    /// Keeps the start value with index `place` fixed.
     pub(crate) fn hold_start_at(&mut self, place: usize) {
         if !self.held_starts.contains(&place) {
             self.held_starts.push(place);
@@ -191,18 +191,19 @@ impl Model {
         }
     }
 
-    /// The indices of the start values that stay unmoved, in ascending order.
+    /// The indices of the start values that stay fixed, in ascending order.
     pub(crate) fn held_starts(&self) -> &[usize] {
         &self.held_starts
     }
 
-    /// Sets whether the reactions of all constraints are outputs, each called `λ_` and the name of its constraint.
+    /// Sets whether the reactions of all constraints are outputs, each called `λ_` followed by the name of its
+    /// constraint.
     pub fn observe_reactions(&mut self, yes: bool) {
         self.observes_reactions = yes;
     }
 
     /// Sets whether sensitivities are needed: motions are then compiled with their derivatives with respect to the
-    /// parameters, and events with theirs by time, state and parameters.
+    /// parameters, and events with theirs with respect to time, state and parameters.
     pub fn differentiate_by_parameters(&mut self, yes: bool) {
         self.by_parameters = yes;
     }
@@ -220,18 +221,18 @@ impl Model {
         self.by_parameters
     }
 
-    /// Whether they are.
+    /// Whether the reactions of all constraints are outputs.
     pub fn observes_reactions(&self) -> bool {
         self.observes_reactions
     }
 
-    /// Replaces start value number `place`.
+    /// Replaces the start value with index `place`.
     pub(crate) fn override_start(&mut self, place: usize, value: f64) {
         self.starts.retain(|&(known, _)| known != place);
         self.starts.push((place, value));
     }
 
-    /// The start values other than those of the document, by their indices.
+    /// The start values that replace those of the document, each with its index.
     pub(crate) fn overridden_starts(&self) -> &[(usize, f64)] {
         &self.starts
     }

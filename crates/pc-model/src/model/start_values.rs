@@ -1,4 +1,4 @@
-//! Start values other than those of the file.
+//! Start values other than those in the file.
 
 use crate::assembly::start;
 use crate::diagnostics::error::ModelError;
@@ -36,10 +36,11 @@ fn list(names: &[String]) -> String {
 }
 
 impl Model {
-    /// Gives a parameter, an input without a table, or what has a start value another value than that of the file.
+    /// Gives a value other than that in the file to a parameter, to an input without a table, or to anything that
+    /// has a start value.
     ///
     /// # Errors
-    /// [`UnknownValue`] with the existing names.
+    /// [`UnknownValue`], which lists the existing names.
     pub fn set_value(&mut self, name: &str, value: f64) -> Result<(), UnknownValue> {
         if self.set(name, value).is_ok() || self.set_start(name, value).is_ok() {
             return Ok(());
@@ -48,7 +49,7 @@ impl Model {
         Err(UnknownValue { name: name.to_owned(), parameters, starts })
     }
 
-    /// The names whose start values are not those of the file, with these values.
+    /// The names whose start values differ from those in the file, with their values.
     pub fn replaced_starts(&self) -> Vec<(String, f64)> {
         let mut replaced = self.overridden_starts().to_vec();
         replaced.sort_unstable_by_key(|&(place, _)| place);
@@ -56,7 +57,7 @@ impl Model {
         replaced.into_iter().map(|(place, value)| (names[place].clone(), value)).collect()
     }
 
-    /// The names that have a start value: coordinates, quasi-velocities, or velocities x' where none is declared, and
+    /// The names that have a start value: coordinates, quasi-velocities (or velocities x' if none is declared), and
     /// first-order states.
     pub fn start_names(&self) -> Vec<String> {
         self.document().start_names()
@@ -75,10 +76,10 @@ impl Model {
         Ok(written.map_or(given.clone(), |written| given.or(&written.value)))
     }
 
-    /// Gives a coordinate or quasi-velocity another start value than that of the file.
+    /// Gives a coordinate, quasi-velocity or first-order state a start value other than that in the file.
     ///
     /// # Errors
-    /// [`UnknownStart`] with the existing names.
+    /// [`UnknownStart`], which lists the existing names.
     pub fn set_start(&mut self, name: &str, value: f64) -> Result<(), UnknownStart> {
         let known = self.start_names();
         match known.iter().position(|known| known == name) {
@@ -91,10 +92,10 @@ impl Model {
     }
 
     /// Holds the value of a coordinate or quasi-velocity fixed when the start is [moved onto the
-    /// constraints](Model::project_start): the others follow.
+    /// constraints](Model::project_start): only the others move.
     ///
     /// # Errors
-    /// [`UnknownStart`] with the existing names.
+    /// [`UnknownStart`], which lists the existing names.
     pub fn hold_start(&mut self, name: &str) -> Result<(), UnknownStart> {
         let mut known = self.start_names();
         known.truncate(known.len() - self.document().states.len()); // constraints do not move first-order states
@@ -107,21 +108,21 @@ impl Model {
         }
     }
 
-    /// The names of the start values that are not to be moved.
+    /// The names of the start values that are held fixed.
     pub fn held_start_names(&self) -> Vec<String> {
         let names = self.start_names();
         self.held_starts().iter().map(|&place| names[place].clone()).collect()
     }
 
-    /// Whether quasi-velocities may follow from start velocities of coordinates that are given with them:
-    /// [`start`](Model::start) then does not have their values.
+    /// Whether quasi-velocities may be determined by start velocities of coordinates that are given with
+    /// them: [`start`](Model::start) then does not contain their values.
     pub fn derives_start(&self) -> bool {
         let document = self.document();
         !document.quasi_velocities.is_empty() && !document.start_velocities.is_empty()
     }
 
-    /// Whether velocities that have no start value may follow from constraints: [`start`](Model::start) then does not have their
-    /// values.
+    /// Whether velocities that have no start value may be determined by constraints: [`start`](Model::start) then does not
+    /// contain their values.
     pub fn completes_start(&self) -> bool {
         let document = self.document();
         let n = document.coordinates.len();
@@ -136,9 +137,9 @@ impl Model {
         !document.constraints.is_empty() && !given.iter().enumerate().all(|(s, &given)| given || is_set(s))
     }
 
-    /// The start state (x, η, z) with the declared η, or (x, x', z) if none is: the values of
+    /// The start state (x, η, z) with the declared η, or (x, x', z) if none is declared: the values of the
     /// [`start_names`](Model::start_names) for the current parameters, whether or not they satisfy the constraints,
-    /// and 0 where none is given.
+    /// and 0 where no value is given.
     ///
     /// # Errors
     /// [`ModelError`] if a start value is not a number.

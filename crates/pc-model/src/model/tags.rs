@@ -7,7 +7,7 @@ use crate::model::builtin::Builtin;
 pub struct Tag {
     /// The word.
     pub name: &'static str,
-    /// The common property of the models.
+    /// The property that the models have in common.
     pub meaning: &'static str,
     /// Their names.
     pub models: &'static [&'static str],

@@ -1,8 +1,8 @@
-//! The functions of expressions.
+//! The functions that expressions may contain.
 
 use pc_expr::{Expr, Graph};
 
-/// The value of a function of the expression language.
+/// The expression for a call of a function of the expression language.
 pub(super) fn call<'g>(function: &str, args: &[Expr<'g>], graph: &'g Graph) -> Expr<'g> {
     match (function, args) {
         ("sin", &[x]) => x.sin(),

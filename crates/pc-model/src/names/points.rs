@@ -1,4 +1,4 @@
-//! Bodies on joints for the mechanics, and their named points.
+//! Bodies on joints, in the form that the mechanics takes, and their named points.
 
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
@@ -12,7 +12,7 @@ use crate::names::scope::Scope;
 use crate::names::stage::Stage;
 
 impl<'g> Scope<'g, '_> {
-    /// Whether it is a component of a point.
+    /// Whether `name` is a component of a point.
     pub(super) fn is_point(&self, name: &str) -> bool {
         self.document.points.iter().any(|point| point.component(name).is_some())
     }
@@ -61,7 +61,7 @@ impl<'g> Scope<'g, '_> {
         Ok(points)
     }
 
-    /// A joint, its constants resolved.
+    /// A joint with its constants resolved.
     pub(crate) fn joint(&mut self, joint: &document::Joint) -> Result<Joint<'g>, ModelError> {
         let made = match (joint.kind, joint.axes.as_slice()) {
             (JointKind::Revolute, &[axis]) => Joint::revolute(axis),
@@ -111,7 +111,7 @@ impl<'g> Scope<'g, '_> {
         }
     }
 
-    /// Functions of parameters.
+    /// The expressions resolved as functions of parameters.
     pub(crate) fn constants<const N: usize>(
         &mut self,
         list: &[Expression; N],
@@ -124,7 +124,7 @@ impl<'g> Scope<'g, '_> {
     }
 }
 
-/// A body of a tree on its joint.
+/// A body of the tree, on its joint.
 pub(crate) fn hung<'g>(body: &document::TreeBody, joint: Joint<'g>) -> TreeBody<'g> {
     let hung = TreeBody::new(&body.name.text, joint);
     match body.parent() {
@@ -133,7 +133,7 @@ pub(crate) fn hung<'g>(body: &document::TreeBody, joint: Joint<'g>) -> TreeBody<
     }
 }
 
-/// The rotation by an angle about the axis of that number, exact for quarter turns.
+/// The rotation by an angle about the axis with index `axis`, exact for quarter turns.
 fn about<'g>(axis: usize, angle: Expr<'g>) -> Matrix<Expr<'g>> {
     let (cos, sin) = match angle.constant().and_then(|angle| quarters(angle.to_f64())) {
         None => (angle.cos(), angle.sin()),
@@ -157,14 +157,15 @@ fn about<'g>(axis: usize, angle: Expr<'g>) -> Matrix<Expr<'g>> {
     })
 }
 
-/// An entry of a rotation matrix, made exact if it is 0 or ±1 up to rounding, as for quarter turns.
+/// An entry of a rotation matrix, made exact if it is 0 or ±1 up to rounding error, as it is for quarter
+/// turns.
 fn entry_of_rotation(entry: Expr<'_>) -> Expr<'_> {
     let near = |entry: f64| [0, 1, -1].into_iter().find(|&unit| (entry - f64::from(unit)).abs() <= ROUNDING);
     entry.constant().and_then(|value| near(value.to_f64())).map_or(entry, Expr::from)
 }
 
-/// The number of quarter turns in an angle, 0 to 3, if it is a multiple up to rounding: π is rounded,
-/// and its sine is not 0.
+/// The number of quarter turns in an angle, 0 to 3, if the angle is a multiple of one up to rounding error: a
+/// rounded π has a sine that is not 0.
 fn quarters(angle: f64) -> Option<u8> {
     let count = (angle / FRAC_PI_2).round();
     let is_some = (angle - count * FRAC_PI_2).abs() <= 4.0 * f64::EPSILON * angle.abs() && count.abs() < 1e3;

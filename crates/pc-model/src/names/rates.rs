@@ -1,4 +1,4 @@
-//! Rates in expressions: x' and d(f).
+//! Rates that occur in expressions: x' and d(f).
 
 use pc_expr::Expr;
 use pc_expr::parse::{Ast, Span};
@@ -49,7 +49,8 @@ impl<'g> Scope<'g, '_> {
         }
     }
 
-    /// d(f) = ∂f/∂t + x_i' ∂f/∂x_i + ż ∂f/∂z, and accelerations if f contains velocities.
+    /// The rate d(f) = ∂f/∂t + x_i' ∂f/∂x_i + ż ∂f/∂z, which also has terms with accelerations if f contains
+    /// velocities.
     pub(super) fn total_derivative(
         &mut self,
         expression: &Expression,
@@ -119,8 +120,8 @@ impl<'g> Scope<'g, '_> {
         Ok(self.graph.directional(&[value], &rates)[0])
     }
 
-    /// An acceleration or a reaction in a function: they are known along a motion, but not as functions of the state
-    /// that could be differentiated.
+    /// The first acceleration or reaction found in a function, if any: these are known along a motion, but not as
+    /// functions of the state that could be differentiated.
     fn without_rate(
         &self,
         value: Expr<'g>,

@@ -15,7 +15,8 @@ use crate::document::{Body, Document, Expression, NamedExpression, TreeBody};
 use crate::names::functions::call;
 use crate::names::stage::Stage;
 
-/// A part of the model as written, and its expression; searched when a value is not a number.
+/// A part of the model as written, with its expression; these parts are searched when a value is not a
+/// number.
 pub(crate) struct Written<'g> {
     pub(crate) value: Expr<'g>,
     pub(crate) place: Place,
@@ -23,14 +24,14 @@ pub(crate) struct Written<'g> {
     context: Context<'g>,
 }
 
-/// The place of a part: its definition, if any, and the branches of `step` around it.
+/// Where a part stands: in which definition, if any, and in which branches of `step`.
 #[derive(Clone, Default)]
 pub(super) struct Context<'g> {
     pub(super) definition: Option<(Stage, usize)>,
     pub(super) branches: Vec<Branch<'g>>,
 }
 
-/// The first branch of `step(condition, …, …)`, or the second.
+/// One of the two branches of `step(condition, …, …)`.
 #[derive(Clone)]
 pub(super) struct Branch<'g> {
     condition: Expr<'g>,
@@ -50,24 +51,25 @@ pub(crate) struct Scope<'g, 'd> {
     /// The source in which the expressions are located.
     source: &'d Source,
     pub(super) time: Expr<'g>,
-    /// The indices of the definitions in their section.
+    /// The index of each definition in its section.
     pub(super) places: HashMap<&'d str, usize>,
-    /// Definitions already used: each is resolved once for each stage.
+    /// The definitions used so far: each is resolved once for each stage.
     pub(super) definitions: BTreeMap<(Stage, usize), Expr<'g>>,
     /// The places where definitions are used.
     pub(super) uses: Vec<((Stage, usize), Context<'g>)>,
-    /// The place of the part being resolved.
+    /// Where the part that is being resolved stands.
     pub(super) context: Context<'g>,
-    /// Quotients and calls in the order of their evaluation, whole expressions after their parts.
+    /// Quotients, calls and whole expressions, in the order of their evaluation: each after its parts.
     pub(crate) written: Vec<Written<'g>>,
-    /// The components of points, once one has been used.
+    /// The components of points, which are computed once one is used.
     pub(super) points: Option<HashMap<String, Expr<'g>>>,
-    /// Forces and torques of reactions that are used, each with a place.
+    /// The forces and torques of reactions that are used, each with a place in the file.
     pub(crate) resultants: Vec<(Expr<'g>, Place)>,
 }
 
 impl<'g, 'd> Scope<'g, 'd> {
-    /// Makes the symbols: parameters first, since print-outs order factors by the creation of their symbols.
+    /// Creates the symbols, beginning with the parameters, since print-outs order factors by the creation of
+    /// their symbols.
     pub(crate) fn new(graph: &'g Graph, document: &'d Document) -> Scope<'g, 'd> {
         let names = document.parameters.iter().map(|p| &p.name.text);
         let coordinates = document.coordinates.iter().map(|c| &c.name.text);
@@ -94,7 +96,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         }
     }
 
-    /// The same names, for expressions in another source.
+    /// A scope with the same names, for expressions in another source.
     pub(crate) fn elsewhere(self, source: &'d Source) -> Scope<'g, 'd> {
         Scope { source, ..self }
     }
@@ -119,7 +121,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         self.document.quasi_velocities.iter().map(|q| self.graph.symbol(&q.name.text)).collect()
     }
 
-    /// The expression that gives parameter number `place`, or an input after all parameters, its value.
+    /// The expression for the value of number `place` of the parameters, which the inputs follow.
     pub(crate) fn parameter(
         &mut self,
         place: usize,
@@ -131,7 +133,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         value
     }
 
-    /// The expression, with velocities as symbols x'.
+    /// The expression in the graph, with velocities as symbols x'.
     pub(crate) fn resolve(&mut self, expression: &Expression, stage: Stage) -> Result<Expr<'g>, ModelError> {
         let before = self.graph.zero_divisions();
         let value = self.ast(expression, &expression.ast, stage)?;
@@ -160,8 +162,8 @@ impl<'g, 'd> Scope<'g, 'd> {
         self.written.push(Written { value, place: expression.place(span), text, context });
     }
 
-    /// The written parts, without branches of `step` that are not taken at these values, either there or
-    /// around every use of their definition.
+    /// The written parts that count at these values: those in branches of `step` that are not taken are left
+    /// out, and so are those of a definition that is used only in such branches.
     pub(crate) fn taken(&self, values: &[(Expr<'g>, f64)]) -> Vec<&Written<'g>> {
         let is_taken = |branch: &Branch<'g>| {
             let condition = self.graph.evaluate(&[branch.condition], values);
@@ -344,19 +346,19 @@ impl<'g, 'd> Scope<'g, 'd> {
         }
     }
 
-    /// Whether it is a constant of the action.
+    /// Whether `name` is a constant of the action.
     fn is_constant(&self, name: &str) -> bool {
         let mut constants = self.document.hamilton_jacobi.iter().flat_map(|action| &action.constants);
         constants.any(|(constant, _)| constant.text == name)
     }
 
-    /// `λ_` before the name of a constraint.
+    /// Whether `name` is `λ_` followed by the name of a constraint.
     pub(super) fn is_reaction(&self, name: &str) -> bool {
         let constraint = name.strip_prefix("λ_");
         constraint.is_some_and(|name| self.document.constraints.iter().any(|c| c.name.text == name))
     }
 
-    /// Whether it is a component of the force or torque of a constraint on a body.
+    /// Whether `name` is a component of the force or torque of a constraint on a body.
     pub(super) fn is_resultant(&self, name: &str) -> bool {
         let of_body = |constraint: &str, body: &Body| {
             let turns = body.orientation.is_some();
@@ -389,7 +391,7 @@ impl<'g, 'd> Scope<'g, 'd> {
     }
 }
 
-/// The entry for `name` in a list of named expressions.
+/// The entry called `name` in a list of named expressions.
 pub(crate) fn entry<'d>(list: &'d [NamedExpression], name: &str) -> Option<&'d NamedExpression> {
     list.iter().find(|item| item.name.text == name)
 }

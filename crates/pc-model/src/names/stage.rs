@@ -1,22 +1,22 @@
-//! Which names an expression may contain, depending on its place.
+//! Which names an expression may contain, depending on its place in the text.
 
-/// Which names an expression may contain, depending on its place.
+/// Which names an expression may contain, depending on its place in the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Stage {
-    /// The value of a parameter: parameters before it.
+    /// The value of a parameter: the preceding parameters.
     Parameter,
-    /// A start value: parameters, and definitions made of them.
+    /// A start value: parameters, and definitions in terms of them.
     Start,
     /// A definition of a quasi-velocity: coordinates, t, and velocities x'.
     Definition,
     /// Kinematics: coordinates, t, and quasi-velocities.
     Kinematics,
-    /// The constants of a body with a joint, of the joint, and of a point: parameters, and definitions
-    /// made of them.
+    /// The constants of a body with a joint, of the joint, and of a point: parameters, and definitions in
+    /// terms of them.
     Joint,
-    /// Mass, inertia, place and attitude of a body: coordinates and t.
+    /// The mass, inertia, position and orientation of a body: coordinates and t.
     Position,
-    /// Mass and inertia of a body: coordinates, first-order states and t.
+    /// The mass and inertia of a body: coordinates, first-order states and t.
     Inertia,
     /// The rate of a first-order state: everything but accelerations.
     Rate,

@@ -5,17 +5,20 @@ use pc_mech::{Constraint, Expr, Graph, System};
 use crate::classification::positions::{Place, Positions, norm};
 use crate::error::NonholoError;
 
-/// A unit vector whose remainder is below this, the root of a rounding error, may depend on others.
+/// A unit vector whose remainder is below this, the square root of a rounding error, may be linearly
+/// dependent on others.
 const DEPENDENT: f64 = 1e-7;
 
-/// The remainder that rounding leaves of coefficients that depend on others where conditions on positions
-/// hold, relative to their remainder at a distance of a hundredth of the size of the system.
+/// The remainder that rounding errors leave of coefficients that are linearly dependent on others where
+/// conditions on positions hold, relative to their remainder at a distance of a hundredth of the size of the
+/// system.
 const VANISHES: f64 = 1e-8;
 
-/// The remainder, in units of displacements, of a condition on positions that follows from others.
+/// A condition on positions follows from others if it leaves no larger remainder than this, in units of
+/// displacements.
 const FOLLOWS: f64 = 1e-9;
 
-/// The number of places at which constraints that are dependent at the start are tested.
+/// The number of points at which constraints that are dependent at the start are tested.
 const PLACES: u64 = 6;
 
 /// A constraint that follows from others.
@@ -23,17 +26,17 @@ const PLACES: u64 = 6;
 pub struct Redundant {
     /// Its name.
     pub constraint: String,
-    /// The constraints it follows from.
+    /// The constraints from which it follows.
     pub follows_from: Vec<String>,
 }
 
-/// The constraints of a system by rank: those that bind it, and those that follow from them.
+/// The constraints of a system, sorted by rank: those that bind it, and those that follow from them.
 ///
-/// Conditions on velocities are C η + c_0, conditions on positions have the coefficients C_s = X_s f, c_0 =
-/// X_0 f. Dependence at almost all states is found exactly. An overconstrained mechanism has conditions that
-/// are dependent only where all of them hold: if the start shows this, it is tested numerically at places
-/// around it that satisfy all conditions on positions, and a condition is redundant if it vanishes near the
-/// start wherever the preceding ones do.
+/// Conditions on velocities are C η + c_0 = 0; conditions on positions f = 0 have the coefficients C_s = X_s
+/// f, c_0 = X_0 f. Dependence at almost all states is found exactly. An overconstrained mechanism has
+/// conditions that are dependent only where all of them hold: if the start shows this, dependence is tested
+/// numerically at points around it that satisfy all conditions on positions, and a condition is redundant if
+/// it vanishes near the start wherever the preceding ones do.
 ///
 /// ```
 /// use pc_mech::{Constraint, Graph, System};
@@ -65,11 +68,12 @@ pub struct Binding {
 }
 
 impl Binding {
-    /// Sorts the constraints of a system; positions come first: a condition on velocities may follow from
-    /// them, but never the other way round. [Nonlinear](Constraint::nonlinear) constraints bind, and no
-    /// other follows from them.
+    /// Sorts the constraints of a system. Conditions on positions come first: a condition on velocities may
+    /// follow from them, but never the other way round. [Nonlinear](Constraint::nonlinear) constraints bind,
+    /// and no other follows from them.
     ///
-    /// `at` are values of time and coordinates where the motion starts, and possibly of other symbols.
+    /// `at` are the values of time and coordinates at which the motion starts, and possibly values of other
+    /// symbols.
     ///
     /// # Errors
     /// [`NonholoError::Contradictory`] for a constraint that no velocity satisfies together with
@@ -97,7 +101,7 @@ impl Binding {
         Ok(Binding { binding, redundant: found.redundant })
     }
 
-    /// The indices of the binding ones, in ascending order.
+    /// The indices of the binding constraints, in ascending order.
     pub fn binding(&self) -> &[usize] {
         &self.binding
     }
@@ -108,7 +112,7 @@ impl Binding {
     }
 }
 
-/// Constraints that are independent at almost all states: C_α and c_α0.
+/// Constraints that are independent at almost all states, with their coefficients C_α and c_α0.
 #[derive(Default)]
 struct Rows<'g> {
     places: Vec<usize>,
@@ -121,13 +125,13 @@ struct Found<'a, 'g> {
     constraints: &'a [Constraint<'g>],
     rows: Rows<'g>,
     redundant: Vec<Redundant>,
-    /// Constraints on velocities that, at almost all states, no velocity satisfies together with others,
-    /// with those others.
+    /// Constraints on velocities that contradict others at almost all states, each with the names of those
+    /// others.
     open: Vec<(usize, Vec<String>)>,
 }
 
 impl<'g> Found<'_, 'g> {
-    /// Adds a constraint by its rank at almost all states.
+    /// Adds a constraint according to its rank at almost all states.
     fn add(&mut self, a: usize) -> Result<(), NonholoError> {
         let (graph, constraint) = (self.system.graph(), &self.constraints[a]);
         let (row, whole) = self.coefficients(a)?;
@@ -167,8 +171,8 @@ impl<'g> Found<'_, 'g> {
         places.into_iter().map(|a| self.constraints[a].name().to_owned()).collect()
     }
 
-    /// Finds those that depend on others where all conditions on positions hold, if the start shows that
-    /// there are any.
+    /// Finds the constraints that depend on others where all conditions on positions hold, if the start shows
+    /// that there are any.
     fn look_where_they_hold(&mut self, at: &[(Expr<'g>, f64)]) -> Result<(), NonholoError> {
         let Some(start) = self.start(at).filter(|_| self.rows.places.len() + self.open.len() > 1) else {
             return Ok(());
@@ -200,7 +204,7 @@ impl<'g> Found<'_, 'g> {
         if on.len() > 1 { self.drop_dependent(&Looked { on, off }, &start) } else { Ok(()) }
     }
 
-    /// Time and coordinates of `at`.
+    /// The time and coordinates in `at`.
     fn start(&self, at: &[(Expr<'g>, f64)]) -> Option<Place> {
         let value = |symbol: Expr<'g>| at.iter().find(|(known, _)| *known == symbol).map(|&(_, value)| value);
         let frame = self.system.frame();
@@ -213,7 +217,8 @@ impl<'g> Found<'_, 'g> {
         Positions::new(self.system, &functions)
     }
 
-    /// C and c_0 of the independent constraints, then of the open ones, at each of the places.
+    /// The coefficients C and c_0 of the independent constraints, then of the open ones, at each of the
+    /// points `places`.
     fn at(&self, positions: &Positions<'g>, places: &[Place]) -> Option<Vec<Vec<Vec<f64>>>> {
         let width = self.system.quasi_velocities().len() + 1;
         let mut whole: Vec<Expr<'g>> = self.rows.whole.iter().flatten().copied().collect();
@@ -228,8 +233,8 @@ impl<'g> Found<'_, 'g> {
             .collect()
     }
 
-    /// Keeps constraints that are independent where all hold, and conditions on positions that do not follow
-    /// from preceding ones.
+    /// Drops constraints that depend on preceding ones where all conditions on positions hold; a condition on
+    /// positions is dropped only if it follows from preceding ones.
     fn drop_dependent(&mut self, looked: &Looked, start: &Place) -> Result<(), NonholoError> {
         let rows = std::mem::take(&mut self.rows);
         let first_open = rows.places.len();
@@ -256,7 +261,8 @@ impl<'g> Found<'_, 'g> {
         Ok(())
     }
 
-    /// Drops a constraint whose coefficients C depend on those `kept`, if c_0 also does.
+    /// Drops a constraint whose coefficients C depend on those of the `kept` ones, if this holds with c_0
+    /// included; otherwise it contradicts them.
     fn settle(
         &mut self,
         a: usize,
@@ -277,7 +283,7 @@ impl<'g> Found<'_, 'g> {
         Ok(())
     }
 
-    /// Whether a condition on positions vanishes around the start wherever the kept ones do.
+    /// Whether a condition on positions vanishes around the start wherever the conditions that were kept do.
     fn vanishes(&self, a: usize, start: &Place) -> bool {
         let holonomic =
             self.rows.places.iter().copied().filter(|&b| self.constraints[b].is_holonomic(self.system));
@@ -288,7 +294,7 @@ impl<'g> Found<'_, 'g> {
 }
 
 impl<'g> Rows<'g> {
-    /// The constraints of which `row` is a combination: each of them is necessary.
+    /// The constraints of which `row` is a linear combination; each of them is necessary.
     fn depends_on(&self, graph: &'g Graph, row: &[Expr<'g>]) -> Vec<usize> {
         let independent_without = |a: &usize| {
             let mut rows = self.rows.clone();
@@ -299,7 +305,7 @@ impl<'g> Rows<'g> {
     }
 }
 
-/// The coefficients of a constraint that are tested.
+/// Which coefficients of a constraint are tested.
 #[derive(Clone, Copy, PartialEq)]
 enum Part {
     /// C
@@ -308,8 +314,8 @@ enum Part {
     Whole,
 }
 
-/// C and c_0 of constraints, one after the other, at places where all conditions on positions hold and at
-/// places around them.
+/// The coefficients C and c_0 of each constraint, at points where all conditions on positions hold (`on`) and
+/// at points around them (`off`).
 struct Looked {
     on: Vec<Vec<Vec<f64>>>,
     off: Vec<Vec<Vec<f64>>>,
@@ -334,7 +340,8 @@ impl Looked {
     }
 }
 
-/// Whether the C of constraints, given with c_0, are independent, as far as units allow a decision.
+/// Whether the coefficients C of constraints, given with c_0, are independent, as far as this can be decided
+/// in the given units.
 fn are_independent(whole: &[Vec<f64>]) -> bool {
     let mut span = Span::default();
     whole.iter().all(|whole| span.add(&whole[..whole.len() - 1]) > DEPENDENT)
@@ -356,12 +363,12 @@ impl Span {
         rest
     }
 
-    /// The length of that part.
+    /// The length of the part of a vector, scaled to length one, that is orthogonal to the span.
     fn left_of(&self, vector: &[f64]) -> f64 {
         norm(&self.rest(vector))
     }
 
-    /// Adds a vector. Returns that length.
+    /// Adds a vector. Returns the length of its part orthogonal to the span, as `left_of` does.
     fn add(&mut self, vector: &[f64]) -> f64 {
         let rest = self.rest(vector);
         let left = norm(&rest);

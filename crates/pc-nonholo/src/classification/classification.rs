@@ -9,21 +9,23 @@ use crate::error::NonholoError;
 /// The kind of a constraint, by Frobenius' theorem.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ConstraintKind {
-    /// It binds positions, f(t, x) = 0.
+    /// It restricts positions: f(t, x) = 0.
     Position,
-    /// It binds velocities, but together with the others it can be written f(t, x) = const: holonomic in
-    /// disguise.
+    /// It restricts velocities, but together with the others it can be written f(t, x) = const: it is
+    /// holonomic in disguise.
     Integrable,
-    /// It binds velocities but leaves all positions within reach.
+    /// It restricts velocities but leaves all positions within reach.
     Nonholonomic {
-        /// The largest component along it of the commutators of the allowed velocities, where it was tested.
+        /// The largest component, along the constraint, of the commutators of the allowed velocities, at the
+        /// state where it was tested.
         residual: f64,
     },
-    /// It binds velocities and is not affine in them. Frobenius' test does not apply to it.
+    /// It restricts velocities and is not affine in them. Frobenius' test does not apply to it.
     Nonlinear,
 }
 
-/// Constraints of a system: those that bind it, each with its kind (Frobenius), and those that follow from them.
+/// The constraints of a system: those that bind it, each with its kind (Frobenius), and those that follow from
+/// them.
 #[derive(Clone, Debug)]
 pub struct ConstraintClassification<'g> {
     multipliers: Option<Multipliers<'g>>,
@@ -34,22 +36,23 @@ pub struct ConstraintClassification<'g> {
 
 impl<'g> ConstraintClassification<'g> {
     /// Sorts the constraints of a system: by rank into [binding](Binding) and redundant ones, and by
-    /// Frobenius' test into holonomic and nonholonomic ones. With X'_1..X'_l and X'_0 a basis of the
+    /// Frobenius' test into holonomic and nonholonomic ones. If X'_1..X'_l and X'_0 are a basis of the
     /// velocities that all constraints allow,
     ///
     ///   [X'_r, X'_s] = c'_rs^m X'_m + c'_rs^α X'_α,   r, s = 0..l,
     ///
-    /// the constraint α is integrable if neither these brackets, c'_rs^α = 0, nor brackets of brackets have a component
-    /// along it: then it vanishes on the least involutive family of fields that contains X'_0..X'_l.
-    /// Positions come first: a condition on velocities may follow from them, but never the other way round.
+    /// the constraint α is integrable if these brackets have no component along it, c'_rs^α = 0, and brackets of
+    /// brackets have none either: then it vanishes on the smallest involutive family of fields that contains
+    /// X'_0..X'_l. Conditions on positions come first: a condition on velocities may follow from them, but never the
+    /// other way round.
     ///
-    /// [Nonlinear](Constraint::nonlinear) constraints come last and count neither for the rank nor for the test of the
-    /// others; a constraint that restricts no velocity at almost all states is not tested for redundancy.
+    /// [Nonlinear](Constraint::nonlinear) constraints come last and are ignored both in the rank and in the test of
+    /// the others; a constraint that restricts no velocity at almost all states is not tested for redundancy.
     ///
     /// `at` are values of time, coordinates, quasi-velocities and parameters where the constraints are regular.
     ///
     /// # Errors
-    /// [`NonholoError::Contradictory`] for a constraint that no velocity satisfies together with others;
+    /// [`NonholoError::Contradictory`] for a constraint that no velocity satisfies together with others; the
     /// errors of [`System::with_multipliers`] and [`Adapted::new`](crate::Adapted::new).
     pub fn new(
         system: &System<'g>,
@@ -84,9 +87,9 @@ impl<'g> ConstraintClassification<'g> {
 
     /// The number of combinations of the nonholonomic constraints, with coefficients that are functions of time and
     /// coordinates, that are integrable although no single constraint is
-    /// ([`IntegrableCombination`](crate::IntegrableCombination) finds them): the l + m dimensions of all velocities, l
-    /// of them allowed, minus those of the least involutive family of fields that contains the allowed ones, minus the
-    /// number of integrable constraints.
+    /// ([`IntegrableCombination`](crate::IntegrableCombination) finds them). It is the l + m dimensions of all
+    /// velocities, l of them allowed, minus those of the smallest involutive family of fields that contains the
+    /// allowed ones, minus the number of integrable constraints.
     pub fn integrable_combinations(&self) -> usize {
         self.combinations
     }
@@ -96,14 +99,14 @@ impl<'g> ConstraintClassification<'g> {
         &self.redundant
     }
 
-    /// Whether all constraints bind positions or are integrable.
+    /// Whether all constraints restrict positions or are integrable.
     pub fn is_holonomic(&self) -> bool {
         self.kinds.iter().all(|kind| matches!(kind, ConstraintKind::Position | ConstraintKind::Integrable))
     }
 }
 
-/// The kind of each constraint, for the affine ones as if there were no others, and the number of integrable
-/// combinations.
+/// The kind of each constraint, where affine constraints are classified as if there were only these, and the
+/// number of integrable combinations.
 fn kinds<'g>(
     multipliers: &Multipliers<'g>,
     at: &[(Expr<'g>, f64)],

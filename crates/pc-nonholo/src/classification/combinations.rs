@@ -7,16 +7,17 @@ use crate::classification::involutive::along;
 use crate::classification::reach::{Reach, affine};
 use crate::error::NonholoError;
 
-/// A combination μ_α φ_α = dF/dt of nonholonomic constraints φ_α = C_α η + c_α0: they keep F(t, x) = const.
+/// A combination μ_α φ_α = dF/dt of nonholonomic constraints φ_α = C_α η + c_α0: these constraints keep F(t,
+/// x) constant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IntegrableCombination<'g> {
-    /// The constraints by name, each with μ_α(t, x), none of them 0.
+    /// The names of the constraints, each with its coefficient μ_α(t, x); none of these is 0.
     pub coefficients: Vec<(String, Expr<'g>)>,
     /// F
     pub integral: Expr<'g>,
 }
 
-/// A form f_i dx_i + f_0 dt, a combination of the forms of the constraints.
+/// A differential form f_i dx_i + f_0 dt that is a linear combination of the forms of the constraints.
 #[derive(Clone)]
 struct Form<'g> {
     /// The coefficients of the combination, one for each constraint.
@@ -27,9 +28,10 @@ struct Form<'g> {
 
 impl<'g> IntegrableCombination<'g> {
     /// Finds combinations in closed form among the `count` independent ones that constraints of these `kinds`
-    /// [have](crate::ConstraintClassification::integrable_combinations): with coefficients that are constant, or
-    /// functions of time and coordinates, or constant for the values of the parameters. They are independent of each
-    /// other, and proved. None is found unless there are as many quasi-velocities as coordinates.
+    /// [have](crate::ConstraintClassification::integrable_combinations): their coefficients are constant, or
+    /// functions of time and coordinates, or constant for the given values of the parameters. The combinations found
+    /// are independent of each other, and their integrability is proved. None is found unless there are as many
+    /// quasi-velocities as coordinates.
     ///
     /// `at` are values of time, coordinates, quasi-velocities and parameters where the constraints are regular.
     ///
@@ -104,7 +106,7 @@ fn variables<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
     system.frame().coordinates().iter().copied().chain([system.frame().time()]).collect()
 }
 
-/// φ_α dt = C_α (a dx + a_0 dt) + c_α0 dt (2), if the frame determines them.
+/// The forms φ_α dt = C_α (a dx + a_0 dt) + c_α0 dt (2), if the frame determines them.
 fn forms<'g>(system: &System<'g>, reach: &Reach<'g>) -> Option<Vec<Form<'g>>> {
     let (graph, frame) = (system.graph(), system.frame());
     if frame.coordinates().len() != frame.operators() {
@@ -136,7 +138,7 @@ impl<'g> Search<'_, 'g> {
         self.system.graph()
     }
 
-    /// The forms for the present values of the parameters.
+    /// The forms with the present values of the parameters substituted.
     fn bound(&self, forms: &[Form<'g>]) -> Vec<Form<'g>> {
         let numbers = self.system.numbers();
         let bind = |form: &Form<'g>| Form {
@@ -146,7 +148,8 @@ impl<'g> Search<'_, 'g> {
         forms.iter().map(bind).collect()
     }
 
-    /// Combinations with rational coefficients that are closed, ∂f_i/∂x_j = ∂f_j/∂x_i, and whose integral is found.
+    /// The combinations with rational coefficients that are closed, ∂f_i/∂x_j = ∂f_j/∂x_i, and whose integral can
+    /// be found.
     fn with_constants(&self, forms: &[Form<'g>]) -> Vec<(Form<'g>, Expr<'g>)> {
         let of = |a: &usize| &forms[*a];
         let columns: Vec<Vec<Expr<'g>>> = self.nonholonomic.iter().map(|a| self.derivative(of(a))).collect();
@@ -159,8 +162,9 @@ impl<'g> Search<'_, 'g> {
         relations.filter_map(sum).collect()
     }
 
-    /// Combinations whose coefficients are functions of time and place: those that vanish on all fields
-    /// reached by commutators, solved for the rates of some coordinates, in each possible order.
+    /// Combinations whose coefficients are functions of time and coordinates: those that vanish on all fields
+    /// reached by commutators, solved for the differentials of some of the variables. Each cyclic order of
+    /// the variables is tried.
     fn with_functions(&self, forms: &[Form<'g>], count: usize) -> Vec<(Form<'g>, Expr<'g>)> {
         let Some(vanishing) = self.vanishing(forms) else { return Vec::new() };
         let places = self.variables.len();
@@ -207,7 +211,8 @@ impl<'g> Search<'_, 'g> {
         Some(basis.into_iter().map(|(form, _)| form).collect())
     }
 
-    /// The forms solved for the first of the variables in this order that they determine, each with the coefficient 1.
+    /// The forms solved for the differentials of the first variables, in this order, that they determine; each of
+    /// these has the coefficient 1 in one form and 0 in the others.
     fn solved(&self, mut forms: Vec<Form<'g>>, order: &[usize]) -> Vec<Form<'g>> {
         let mut done = 0;
         for &place in order {
@@ -227,7 +232,7 @@ impl<'g> Search<'_, 'g> {
         forms
     }
 
-    /// df, the components ∂f_i/∂x_j − ∂f_j/∂x_i.
+    /// The exterior derivative of a form: its components ∂f_i/∂x_j − ∂f_j/∂x_i.
     fn derivative(&self, form: &Form<'g>) -> Vec<Expr<'g>> {
         let rows: Vec<Vec<Expr<'g>>> =
             form.components.iter().map(|&f| self.graph().gradient(f, &self.variables)).collect();
@@ -256,7 +261,7 @@ impl<'g> Search<'_, 'g> {
         }
     }
 
-    /// The form with its integral, if one is found.
+    /// The form with its integral, if an integral is found.
     fn integrated(&self, form: Form<'g>) -> Option<(Form<'g>, Expr<'g>)> {
         let integral = self.graph().potential(&form.components, &self.variables)?;
         Some((form, integral))
@@ -271,7 +276,7 @@ impl<'g> Search<'_, 'g> {
         self.graph().generic_rank(&rows) == rows.len()
     }
 
-    /// Whether no allowed velocity changes F, verified numerically.
+    /// Whether no allowed velocity changes F; this is verified numerically.
     fn is_kept(&self, integral: Expr<'g>) -> bool {
         let numbers = self.system.numbers();
         self.reach.allowed.iter().all(|field| {

@@ -5,14 +5,15 @@ use pc_mech::{Expr, Neighbourhood, System};
 /// A field U = U^p X_p, p = 0..k; X_0 belongs to time.
 pub(crate) type OperatorField<'g> = Vec<Expr<'g>>;
 
-/// The terms of the sums C_αm U^m, the components of a field along the constraints.
+/// The terms of the sums C_αm U^m, which are the components of a field along the constraints.
 pub(crate) type Along<'g> = Vec<Vec<Expr<'g>>>;
 
-/// The components along the constraints of fields that, with those `allowed`, span at almost every point all
-/// their commutators, those of commutators included [Frobenius; Chow, Math. Ann. 117 (1939) 98].
+/// The components, along the constraints, of further fields that together with the `allowed` ones span all
+/// their commutators, and the commutators of these, at almost every point [Frobenius; Chow, Math. Ann. 117
+/// (1939) 98].
 ///
-/// The allowed fields are X'_0, with the component 1 along X_0, and others without such a component, with
-/// C_αm X'^m = 0; `rows` are the C_α.
+/// The allowed fields are X'_0, which has the component 1 along X_0, and others that have no such component
+/// and satisfy C_αm X'^m = 0; `rows` are the C_α.
 pub(crate) fn involutive_closure<'g>(
     system: &System<'g>,
     allowed: &[OperatorField<'g>],

@@ -1,20 +1,21 @@
-//! States near a given one that satisfy conditions on positions, in numbers.
+//! Numerical search for states near a given one that satisfy conditions on positions.
 
 use pc_mech::{Expr, Graph, LeastSquares, Matrix, System};
 
-/// The most steps to satisfy a condition nearby; convergence is quadratic at the end.
+/// The largest number of steps towards a nearby point that satisfies a condition; the convergence is
+/// quadratic at the end.
 const MOST_STEPS: usize = 60;
 
-/// The most reductions of a step that does not improve.
+/// The largest number of times that a step is shortened if it brings no improvement.
 const SHORTENINGS: usize = 12;
 
-/// The residual, in units of displacements, that rounding leaves of satisfied conditions.
+/// The residual, in units of displacements, that rounding errors leave of satisfied conditions.
 const SATISFIED: f64 = 1e-11;
 
-/// The relative variation of coordinates.
+/// The relative amount by which coordinates are varied.
 const VARIED: f64 = 0.01;
 
-/// Coordinates smaller than this fraction of the largest are varied as if they were that large.
+/// Coordinates smaller than this fraction of the largest are varied as if they were of that size.
 const LEAST: f64 = 0.1;
 
 /// Conditions f(t, x) = 0 on the positions of a system, possibly dependent on each other.
@@ -22,13 +23,13 @@ pub(crate) struct Positions<'g> {
     graph: &'g Graph,
     time: Expr<'g>,
     x: Vec<Expr<'g>>,
-    /// f, then the ∂f/∂x, row after row.
+    /// The functions f, then their derivatives ∂f/∂x, row by row.
     values: Vec<Expr<'g>>,
     count: usize,
     parameters: Vec<(Expr<'g>, f64)>,
 }
 
-/// A time with its coordinates.
+/// A time, and the coordinates at that time.
 #[derive(Clone, Debug)]
 pub(crate) struct Place {
     pub(crate) t: f64,
@@ -36,7 +37,7 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    /// A place near this one, different for each `index` and the same on each run.
+    /// A point near this one, different for each `index` but the same in every run.
     pub(crate) fn varied(&self, index: u64) -> Place {
         let scale = self.scale();
         let mut random = Random(index.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5851_f42d_4c95_7f2d);
@@ -44,7 +45,7 @@ impl Place {
         Place { t: vary(self.t), x: self.x.iter().map(|&x| vary(x)).collect() }
     }
 
-    /// The largest of the coordinates, up to 1; 1 if all are zero.
+    /// The magnitude of the largest coordinate, but at most 1; 1 if all are zero.
     fn scale(&self) -> f64 {
         let largest = self.x.iter().fold(0.0f64, |size, x| size.max(x.abs()));
         if largest == 0.0 { 1.0 } else { largest.min(1.0) }
@@ -61,7 +62,7 @@ impl<'g> Positions<'g> {
         Positions { graph, time: frame.time(), x, values, count: functions.len(), parameters }
     }
 
-    /// Expressions in time, coordinates and parameters at a place; `None` if one is not finite.
+    /// The values at a point of expressions in time, coordinates and parameters; `None` if one is not finite.
     pub(crate) fn evaluate(&self, expressions: &[Expr<'g>], at: &Place) -> Option<Vec<f64>> {
         let state = self.x.iter().copied().zip(at.x.iter().copied());
         let values: Vec<_> =
@@ -70,7 +71,7 @@ impl<'g> Positions<'g> {
         found.iter().all(|value| value.is_finite()).then_some(found)
     }
 
-    /// f and ∂f/∂x, each row divided by its size in `sizes`.
+    /// The values of f and ∂f/∂x, each row divided by its entry in `sizes`.
     fn at(&self, place: &Place, sizes: &[f64]) -> Option<(Vec<f64>, Matrix<f64>)> {
         let values = self.evaluate(&self.values, place)?;
         let (f, slopes) = values.split_at(self.count);
@@ -81,7 +82,7 @@ impl<'g> Positions<'g> {
         ))
     }
 
-    /// The lengths of the ∂f/∂x at a place, 1 if one vanishes.
+    /// The lengths of the rows ∂f/∂x at a point; 1 for a row that vanishes.
     fn sizes(&self, place: &Place) -> Option<Vec<f64>> {
         let values = self.evaluate(&self.values, place)?;
         let length = |row: &[f64]| row.iter().fold(0.0f64, |size, entry| size.hypot(*entry));
@@ -89,13 +90,13 @@ impl<'g> Positions<'g> {
         Some(sizes.map(|size| if size > 0.0 { size } else { 1.0 }).collect())
     }
 
-    /// The distance of f from zero, in units of displacements; infinite where it has no value.
+    /// The distance of f from zero, in units of displacements; infinite where f has no value.
     pub(crate) fn off(&self, place: &Place) -> f64 {
         let found = self.sizes(place).and_then(|sizes| self.at(place, &sizes));
         found.map_or(f64::INFINITY, |(f, _)| norm(&f) / place.scale())
     }
 
-    /// A place near `start`, at its time, where f = 0, by the method of Levenberg and Marquardt with μ =
+    /// A point near `start`, at the same time, where f = 0, found by Levenberg and Marquardt's method with μ =
     /// |f|²: it converges quadratically even if ∂f/∂x loses rank where f = 0 [N. Yamashita, M. Fukushima,
     /// Computing Suppl. 15 (2001) 239–249]. `None` if it does not converge.
     pub(crate) fn near(&self, start: &Place) -> Option<Place> {
@@ -128,7 +129,7 @@ pub(crate) fn norm(values: &[f64]) -> f64 {
     values.iter().fold(0.0f64, |size, value| size.hypot(*value))
 }
 
-/// splitmix64, uniform in (−1, 1).
+/// The random number generator splitmix64, uniform in (−1, 1).
 struct Random(u64);
 
 impl Random {

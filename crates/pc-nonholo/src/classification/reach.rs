@@ -6,22 +6,22 @@ use crate::classification::involutive::{Along, OperatorField, involutive_closure
 use crate::error::NonholoError;
 use crate::reduction::adapted::independent;
 
-/// The velocities and directions within reach under constraints C η + c_0 = 0.
+/// The velocities allowed by constraints C η + c_0 = 0, and the directions reached by their commutators.
 pub(crate) struct Reach<'g> {
     /// The C_α.
     pub(crate) rows: Vec<Vec<Expr<'g>>>,
     /// The c_α0.
     pub(crate) rests: Vec<Expr<'g>>,
-    /// X'_0..X'_l, in components along X_0..X_k.
+    /// The fields X'_0..X'_l, in components along X_0..X_k.
     pub(crate) allowed: Vec<OperatorField<'g>>,
-    /// The components along the constraints of the fields added by commutators.
+    /// The components, along the constraints, of the fields added by commutators.
     pub(crate) reached: Vec<Along<'g>>,
     /// Values near which the constraints are regular.
     pub(crate) near: Neighbourhood<'g>,
 }
 
 impl<'g> Reach<'g> {
-    /// The reach under affine constraints, regular at the values `at` of time and state.
+    /// The reach under affine constraints that are regular at the values `at` of time and state.
     pub(crate) fn new(
         multipliers: &Multipliers<'g>,
         at: &[(Expr<'g>, f64)],
@@ -38,8 +38,8 @@ impl<'g> Reach<'g> {
     }
 }
 
-/// The indices of the constraints that are affine in the velocities, and the system under these alone if
-/// there are any.
+/// The indices of the constraints that are affine in the velocities and, if there are any, the system under
+/// these alone.
 pub(crate) fn affine<'g>(
     multipliers: &Multipliers<'g>,
 ) -> Result<(Vec<usize>, Option<Multipliers<'g>>), NonholoError> {
@@ -53,11 +53,11 @@ pub(crate) fn affine<'g>(
     Ok((affine, Some(without)))
 }
 
-/// X'_0..X'_l of the velocities that satisfy C η + c_0 = 0, in components along X_0..X_k, by the l
-/// quasi-velocities `independent`.
+/// The fields X'_0..X'_l of the velocities that satisfy C η + c_0 = 0, in components along X_0..X_k, for the
+/// l quasi-velocities `independent`.
 ///
 /// # Errors
-/// [`MechError::Algebra`] for constraints that are dependent everywhere.
+/// [`MechError::Algebra`] if the constraints are linearly dependent everywhere.
 fn allowed<'g>(
     system: &System<'g>,
     independent: &[usize],

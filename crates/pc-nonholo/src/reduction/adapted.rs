@@ -1,11 +1,11 @@
-//! Frames in which constraints are vanishing quasi-velocities.
+//! Frames in which constraints make quasi-velocities vanish.
 
 use pc_mech::{Constraint, Expr, MechError, Multipliers, ShapeError, System};
 
 use crate::error::NonholoError;
 use crate::reduction::constrained::Constrained;
 
-/// A system in quasi-velocities of which the last are the left-hand sides of its constraints,
+/// A system whose last quasi-velocities are the left-hand sides of its constraints,
 ///
 ///   η'_s = η_s of the l that stay independent,   η'_α = C_αr η_r + c_α0 (28),   α = l+1..k, r = 1..k,
 ///
@@ -18,17 +18,17 @@ pub struct Adapted<'g> {
 }
 
 impl<'g> Adapted<'g> {
-    /// The system of `multipliers` in the quasi-velocities that are left independent, in their order, and the left-hand
-    /// sides C η + c_0 of its constraints, each called by the name of its constraint.
+    /// The system of `multipliers` in the quasi-velocities that stay independent, in their order, followed by the
+    /// left-hand sides C η + c_0 of its constraints, each with the name of its constraint.
     ///
-    /// The dependent ones are those that the constraints determine best at the values `at` of time, coordinates,
-    /// quasi-velocities and parameters; if a constraint says that a quasi-velocity vanishes, it is that one. The
-    /// frame is singular where these are not determined.
+    /// The dependent quasi-velocities are those that the constraints determine best at the values `at` of time,
+    /// coordinates, quasi-velocities and parameters; if a constraint says that a quasi-velocity vanishes, that
+    /// one is dependent. The frame is singular where the constraints do not determine these quasi-velocities.
     ///
     /// # Errors
-    /// [`NonholoError::Nonlinear`]; [`NonholoError::Mech`]; its
-    /// [`ConstraintError::Singular`](pc_mech::ConstraintError::Singular) says that the constraints are dependent at
-    /// `at`.
+    /// [`NonholoError::Nonlinear`]; [`NonholoError::Mech`], where
+    /// [`ConstraintError::Singular`](pc_mech::ConstraintError::Singular) says that the constraints are linearly
+    /// dependent at `at`.
     pub fn new(multipliers: &Multipliers<'g>, at: &[(Expr<'g>, f64)]) -> Result<Adapted<'g>, NonholoError> {
         let system = multipliers.equations().system();
         let eta = system.quasi_velocities();
@@ -42,8 +42,8 @@ impl<'g> Adapted<'g> {
         Ok(Adapted { system: system.in_quasi_velocities(names, &definitions)?, free })
     }
 
-    /// The system with free quasi-velocities that have these names (one for each) and are orthonormal in the kinetic
-    /// metric: their mass matrix is the unit matrix, l × l.
+    /// The system with free quasi-velocities that have these names, one for each, and are orthonormal in the kinetic
+    /// metric: their mass matrix is the l × l unit matrix.
     ///
     /// # Errors
     /// [`NonholoError::Mech`], with the errors of [`System::in_orthonormal_frame`].
@@ -60,7 +60,7 @@ impl<'g> Adapted<'g> {
         &self.system
     }
 
-    /// Number l of free quasi-velocities.
+    /// The number l of free quasi-velocities.
     pub fn free(&self) -> usize {
         self.free
     }
@@ -102,7 +102,8 @@ pub(crate) fn independent<'g>(
     Ok((0..eta.len()).filter(|s| !dependent.contains(s)).collect())
 }
 
-/// The indices of the quasi-velocities that the constraints set to zero, if each constraint does just that.
+/// The indices of the quasi-velocities that the constraints set to zero, if that is all that each constraint
+/// does.
 fn vanishing<'g>(eta: &[Expr<'g>], velocities: &[Expr<'g>]) -> Option<Vec<usize>> {
     velocities.iter().map(|velocity| eta.iter().position(|eta| eta == velocity)).collect()
 }

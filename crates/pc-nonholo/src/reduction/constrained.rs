@@ -1,19 +1,21 @@
-//! A system some of whose quasi-velocities are kept at zero.
+//! Systems in which some quasi-velocities are kept at zero.
 
 use pc_mech::{Equations, Expr, System};
 
 use crate::error::NonholoError;
 
-/// A system with the nonholonomic constraints η_α = 0, its equations (30), and the reactions that keep them.
+/// A system with the nonholonomic constraints η_α = 0, its equations (30), and the reactions that enforce the
+/// constraints.
 #[derive(Clone, Debug)]
 pub struct Constrained<'g> {
-    /// The whole system, free quasi-velocities first.
+    /// The whole system, with the free quasi-velocities first.
     system: System<'g>,
     equations: Equations<'g>,
 }
 
 impl<'g> Constrained<'g> {
-    /// `system` with the quasi-velocities of `vanishing` (symbols) kept at zero; the others stay in their order.
+    /// The `system` with the quasi-velocities whose symbols are `vanishing` kept at zero; the others stay in
+    /// their order.
     ///
     /// # Errors
     /// [`NonholoError::NotAQuasiVelocity`]; [`NonholoError::Twice`];
@@ -43,35 +45,36 @@ impl<'g> Constrained<'g> {
         &self.system
     }
 
-    /// The symbols of the quasi-velocities that are kept at zero, length k − l.
+    /// The symbols of the k − l quasi-velocities that are kept at zero.
     pub fn vanishing(&self) -> &[Expr<'g>] {
         &self.system.quasi_velocities()[self.equations.right_hand_side().len()..]
     }
 
-    /// The equations (30) of the free quasi-velocities, l of them, with ẋ_i = b_is η_s + b_i0 (29), s = 1..l.
+    /// The l equations (30) of the free quasi-velocities, with ẋ_i = b_is η_s + b_i0 (29), s = 1..l.
     pub fn equations(&self) -> &Equations<'g> {
         &self.equations
     }
 
-    /// The system of the free quasi-velocities with the constraints substituted into L; the terms lost by this are
-    /// added to its forces. Its equations are (32), and in momenta (34).
+    /// The system of the free quasi-velocities, with the constraints substituted into L; the terms that are lost
+    /// by this are added to its forces. Its equations are (32), and in momenta (34).
     ///
     /// # Errors
-    /// [`NonholoError::Mech`] if the parts do not fit together, which cannot happen.
+    /// [`NonholoError::Mech`] if the parts were inconsistent, which cannot happen.
     pub fn free_system(&self) -> Result<System<'g>, NonholoError> {
         Ok(self.system.constrained(self.equations.right_hand_side().len())?)
     }
 
-    /// The reactions λ_α conjugate to the vanishing η_α, length k − l, in the order of the system: the residuals
+    /// The k − l reactions λ_α conjugate to the vanishing η_α, in the order of the system: the residuals
     ///
     ///   λ_α = D_t p_α − (c_rα^m η_r + c_0α^m) p_m − X_α L − Q_α
     ///
-    /// of the dropped equations along the motion, functions of (t, x, free η). They are Lagrange's multipliers.
+    /// of the dropped equations along the motion, as functions of (t, x, free η). They are Lagrange's
+    /// multipliers.
     pub fn reactions(&self) -> Vec<Expr<'g>> {
         self.reactions_by(&self.equations.accelerations())
     }
 
-    /// The reactions with these accelerations of the free η, such as their symbols.
+    /// The reactions expressed with these accelerations of the free η, which may be symbols.
     pub fn reactions_by(&self, accelerations: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let (system, graph) = (&self.system, self.system.graph());
         let frame = system.frame();

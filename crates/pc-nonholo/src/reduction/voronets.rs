@@ -1,15 +1,15 @@
-//! Voronets' equations (35) and Chaplygin's.
+//! Voronets' equations (35) and Chaplygin's equations.
 
 use pc_mech::{Equations, Expr, Graph, Matrix, Multipliers, System};
 
 use crate::error::NonholoError;
 use crate::reduction::adapted::affine;
 
-/// A system in the velocities of its coordinates whose constraints are solved for some of them,
+/// A system in the velocities of its coordinates, whose constraints are solved for some of these velocities,
 ///
 ///   ẋ_r = α_ri ẋ_i + α_r,   i = 1..l, r = l+1..n,
 ///
-/// and its equations of motion (35), of x_1..x_n and ẋ_1..ẋ_l,
+/// and its equations of motion (35) in x_1..x_n and ẋ_1..ẋ_l,
 ///
 ///   d/dt ∂θ/∂ẋ_i = ∂(θ+U)/∂x_i + α_ri ∂(θ+U)/∂x_r + (c_ji^r ẋ_j + c_0i^r) (∂T/∂ẋ_r)_0 + Q_i + α_ri Q_r.
 ///
@@ -32,12 +32,13 @@ pub struct Voronets<'g> {
 }
 
 impl<'g> Voronets<'g> {
-    /// The constraints of `multipliers`, whose system is in the [velocities](System::in_velocities) of its coordinates,
-    /// solved for the velocities that they determine best at the values `at` of time, coordinates and velocities.
+    /// Solves the constraints of `multipliers`, whose system must be in the [velocities](System::in_velocities) of its
+    /// coordinates, for the velocities that they determine best at the values `at` of time, coordinates and velocities.
     ///
     /// # Errors
     /// [`NonholoError::NotInVelocities`]; [`NonholoError::Nonlinear`];
-    /// [`ConstraintError::Singular`](pc_mech::ConstraintError::Singular) if the constraints are dependent at `at`.
+    /// [`ConstraintError::Singular`](pc_mech::ConstraintError::Singular) if the constraints are linearly dependent
+    /// at `at`.
     pub fn new(multipliers: &Multipliers<'g>, at: &[(Expr<'g>, f64)]) -> Result<Voronets<'g>, NonholoError> {
         let system = multipliers.equations().system();
         let (graph, x, v) = (system.graph(), system.frame().coordinates(), system.quasi_velocities());
@@ -63,11 +64,11 @@ impl<'g> Voronets<'g> {
         })
     }
 
-    /// Voronets' equations for the independent velocities that make the equations shortest, as
-    /// [`Multipliers::shortest`] says.
+    /// Voronets' equations for the independent velocities that make the equations shortest, chosen as in
+    /// [`Multipliers::shortest`].
     ///
     /// # Errors
-    /// As [`new`](Voronets::new).
+    /// As for [`new`](Voronets::new).
     pub fn shortest(
         multipliers: &Multipliers<'g>,
         at: &[(Expr<'g>, f64)],
@@ -78,7 +79,7 @@ impl<'g> Voronets<'g> {
         Voronets::new(&multipliers.shortest(at, equations)?, at)
     }
 
-    /// The system whose constraints are solved, of all n velocities.
+    /// The system in all n velocities, whose constraints were solved.
     pub fn held(&self) -> &System<'g> {
         self.multipliers.equations().system()
     }
@@ -95,12 +96,12 @@ impl<'g> Voronets<'g> {
         self.held().frame().coordinates()
     }
 
-    /// The symbols of the independent coordinates x_i, length l.
+    /// The symbols of the l independent coordinates x_i.
     pub fn independent(&self) -> Vec<Expr<'g>> {
         self.independent.iter().map(|&i| self.coordinates()[i]).collect()
     }
 
-    /// The symbols of the dependent coordinates x_r, length n − l.
+    /// The symbols of the n − l dependent coordinates x_r.
     pub fn dependent(&self) -> Vec<Expr<'g>> {
         self.dependent.iter().map(|&r| self.coordinates()[r]).collect()
     }
@@ -115,7 +116,7 @@ impl<'g> Voronets<'g> {
         &self.drift
     }
 
-    /// ∂f/∂x_i + α_ri ∂f/∂x_r of functions of t and x; for i = 0, ∂f/∂t + α_r ∂f/∂x_r.
+    /// The derivatives ∂f/∂x_i + α_ri ∂f/∂x_r of functions f of t and x; for i = 0, ∂f/∂t + α_r ∂f/∂x_r.
     fn along(&self, i: usize, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let dependent = self.dependent().into_iter();
         let rates: Vec<(Expr<'g>, Expr<'g>)> = match i.checked_sub(1) {
@@ -128,10 +129,11 @@ impl<'g> Voronets<'g> {
         self.graph().directional(functions, &rates)
     }
 
-    /// c_ji^r of (35), j = 0..l with 0 for time and i = 1..l, for each dependent coordinate: length n − l.
+    /// The coefficients c_ji^r of (35), one for each of the n − l dependent coordinates, where j = 0..l, with
+    /// 0 for time, and i = 1..l.
     ///
     /// # Panics
-    /// If j or i is larger than l.
+    /// If j or i is greater than l.
     pub fn structure(&self, j: usize, i: usize) -> Vec<Expr<'g>> {
         let column = |i: usize| match i.checked_sub(1) {
             None => self.drift.clone(),
@@ -143,10 +145,10 @@ impl<'g> Voronets<'g> {
     }
 
     /// The system of the independent velocities whose equations (9) are (35): its Lagrangian is θ + U, and the terms
-    /// lost by substituting the constraints are added to the forces.
+    /// that are lost by substituting the constraints are added to the forces.
     ///
     /// # Errors
-    /// [`NonholoError::Mech`] if the parts do not fit together, which cannot happen.
+    /// [`NonholoError::Mech`] if the parts were inconsistent, which cannot happen.
     pub fn system(&self) -> Result<System<'g>, NonholoError> {
         let (system, graph) = (self.held(), self.graph());
         let v = system.quasi_velocities();
@@ -162,9 +164,9 @@ impl<'g> Voronets<'g> {
         Ok(self.multipliers.eliminated(&self.solved, flat)?.with_added_forces(&lost)?)
     }
 
-    /// Whether the equations are Chaplygin's: neither L, Q nor the coefficients depend on the dependent
+    /// Whether the equations are Chaplygin's: L, Q and the coefficients do not depend on the dependent
     /// coordinates, and the α_r vanish. Then the equations of the independent coordinates can be integrated
-    /// alone.
+    /// by themselves.
     pub fn is_chaplygin(&self) -> bool {
         let system = self.held();
         let parts: Vec<Expr<'g>> = std::iter::once(system.lagrangian())

@@ -1,4 +1,4 @@
-//! Two models in two forms, integrated and compared.
+//! The motions of two models, each in a form of its own, integrated and compared.
 
 use pc_model::Model;
 
@@ -16,18 +16,18 @@ use crate::plan::Wishes;
 pub struct Compared {
     /// The motions.
     pub runs: [Run; 2],
-    /// How they agree and differ.
+    /// How the motions agree and differ.
     pub comparison: Comparison,
 }
 
 impl Compared {
-    /// Integrates the motions of two models, and compares them at the times of the first. Where they
-    /// differ, both are integrated once more at smaller tolerances: this tells different motions
-    /// from errors of integration.
+    /// Integrates the motions of two models, and compares them at the times of the first. Where they differ,
+    /// both are integrated once more at smaller tolerances, to distinguish different motions from errors of
+    /// integration.
     ///
     /// # Errors
-    /// [`CompareError`] where there is nothing to compare, and any error of a run; a motion that
-    /// fails is not an error: it is compared as far as it goes.
+    /// [`CompareError`] if there is nothing to compare, and any error of a run. It is not an error if a
+    /// motion fails: it is compared as far as it goes.
     pub fn of(
         models: [&Model; 2],
         wishes: [&Wishes; 2],
@@ -63,10 +63,10 @@ impl Compared {
         Ok(Compared { runs: [a, b], comparison })
     }
 
-    /// An error unless both motions were completed and do not differ.
+    /// An error unless both motions were completed and agree.
     ///
     /// # Errors
-    /// [`CompareError::Different`], or that of a motion.
+    /// [`CompareError::Different`], or the error of a motion.
     pub fn outcome(self) -> Result<(), RunError> {
         let differences = self.comparison.differing();
         let [a, b] = self.runs;

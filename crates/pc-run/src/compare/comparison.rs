@@ -5,7 +5,7 @@ use crate::compare::error::CompareError;
 use crate::compare::formula::Formula;
 use crate::motion::run::{Ending, Run};
 
-/// The column that nearly every two motions share.
+/// The column that nearly any two motions have in common.
 const ENERGY: &str = "energy";
 
 /// What to compare, and how closely.
@@ -13,9 +13,10 @@ const ENERGY: &str = "energy";
 pub struct Question {
     /// The difference allowed.
     pub allowance: Allowance,
-    /// The columns; all that both have if there are none.
+    /// The columns to compare; if empty, all columns that both motions have.
     pub columns: Vec<String>,
-    /// Expressions in columns and parameters of the first, each with one in those of the second.
+    /// Expressions in the columns and parameters of the first motion, each paired with one in those of the
+    /// second.
     pub pairs: Vec<(String, String)>,
 }
 
@@ -34,16 +35,16 @@ pub struct Comparison {
     pub only_first: Vec<String>,
     /// Columns that only the second has.
     pub only_second: Vec<String>,
-    /// How the ends differ, in words.
+    /// A phrase that says how the ends of the motions differ, if they do.
     pub ends: Option<String>,
 }
 
 impl Comparison {
-    /// Compares two runs at the times that both have. If `finer` has both runs at smaller tolerances, twice the resulting changes
-    /// are allowed in addition: errors of integration, which may have grown along the motion.
+    /// Compares two runs at the times that both have. If `finer` contains both runs at smaller tolerances, twice the resulting
+    /// changes are allowed in addition: they are errors of integration, which may have grown along the motion.
     ///
     /// # Errors
-    /// [`CompareError`] where there is nothing to compare, or names are unknown.
+    /// [`CompareError`] if there is nothing to compare, or a name is unknown.
     pub fn new(
         first: &Run,
         second: &Run,
@@ -97,13 +98,14 @@ impl Comparison {
         })
     }
 
-    /// Whether nothing differs by more than is allowed.
+    /// Whether nothing differs by more than the allowed amount.
     pub fn is_same(&self) -> bool {
         self.ends.is_none() && self.differences.iter().all(Difference::is_allowed)
     }
 }
 
-/// Up to each time, twice the change of both columns at smaller tolerances; infinite from where the rows differ.
+/// For each time, twice the largest change of both columns up to that time at smaller tolerances; infinite from
+/// where rows at smaller tolerances are missing.
 fn uncertain(columns: [&[f64]; 2], finer: [&[f64]; 2]) -> Vec<f64> {
     let rows = columns[0].len().min(columns[1].len());
     let change = |i: usize| -> f64 {
@@ -139,7 +141,7 @@ fn column(run: &Run, name: &str) -> Vec<f64> {
     place.map_or_else(Vec::new, |j| run.table.column(j).collect())
 }
 
-/// How the ends differ.
+/// A phrase that says how the ends of the motions differ, if they do.
 fn ends(first: &Run, second: &Run, allowance: Allowance) -> Option<String> {
     let (a, b) = (first.reached(), second.reached());
     let is_event = |run: &Run| matches!(run.ending, Ending::Event { .. });
@@ -150,7 +152,7 @@ fn ends(first: &Run, second: &Run, allowance: Allowance) -> Option<String> {
     Some(format!("A {}, B {}", ending(first), ending(second)))
 }
 
-/// How a motion ended, in words.
+/// A phrase that says how a motion ended.
 pub(super) fn ending(run: &Run) -> String {
     let t = run.reached();
     match &run.ending {

@@ -1,32 +1,32 @@
-//! The difference of two columns.
+//! The difference between two columns.
 
-/// The largest difference of two columns.
+/// The largest difference between two columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
     /// What is compared.
     pub name: String,
-    /// The largest difference; infinite where only one of the values is finite.
+    /// The largest difference; infinite if only one of the two values is finite somewhere.
     pub largest: f64,
-    /// The time at which it is reached.
+    /// The time at which the largest difference is reached.
     pub time: f64,
-    /// The largest finite value of both columns.
+    /// The largest magnitude of the finite values in both columns.
     pub scale: f64,
-    /// The largest difference allowed, where the motions are certain.
+    /// The largest difference allowed, apart from errors of integration.
     pub allowed: f64,
-    /// How far errors of integration move the columns, at most; 0 where that was not needed.
+    /// The most by which errors of integration change the columns; 0 if this was not determined.
     pub uncertain: f64,
-    /// The first time at which the difference is larger.
+    /// The first time at which the difference is larger than allowed.
     pub since: Option<f64>,
-    /// Whether a difference in this column makes the motions different.
+    /// Whether motions that differ in this column count as different.
     pub counts: bool,
 }
 
 /// The difference allowed: |a − b| ≤ `absolute` + `relative`·(the largest value of the column).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Allowance {
-    /// As a fraction of the largest value.
+    /// The part of it that is a fraction of the largest value.
     pub relative: f64,
-    /// Independent of the values.
+    /// The part of it that does not depend on the values.
     pub absolute: f64,
 }
 
@@ -38,8 +38,8 @@ impl Allowance {
 }
 
 impl Difference {
-    /// The difference of the values (t, a, b). Up to each time, errors of integration change them by as much as `uncertain` says,
-    /// and by nothing beyond its last entry.
+    /// The difference between a and b in the values (t, a, b). Up to each time, errors of integration change the values by at
+    /// most the entry of `uncertain`, and not at all after its last entry.
     pub fn new(
         name: String,
         values: &[(f64, f64, f64)],
@@ -72,13 +72,13 @@ impl Difference {
         difference
     }
 
-    /// The same, but without effect on whether the motions are the same.
+    /// The same difference, but without effect on whether the motions are considered the same.
     #[must_use]
     pub fn aside(self) -> Difference {
         Difference { counts: false, ..self }
     }
 
-    /// Whether it is allowed, or does not count.
+    /// Whether the difference is allowed, or does not count.
     pub fn is_allowed(&self) -> bool {
         self.since.is_none() || !self.counts
     }

@@ -8,16 +8,16 @@ use crate::category::Category;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CompareError {
-    /// One model in one form.
+    /// There is only one model in only one form.
     #[error("there is one motion only: give another model, or two forms as in `--form poincare,canonical`")]
     OneMotion,
-    /// More forms than models were given.
+    /// More forms were given than models.
     #[error("--form: {count} forms are given for two motions; give one or two")]
     Forms {
         /// How many.
         count: usize,
     },
-    /// Two models from standard input.
+    /// Both models are to be read from standard input.
     #[error("only one of the models can come from standard input")]
     StandardInput,
     /// The motions begin at different times.
@@ -40,7 +40,7 @@ pub enum CompareError {
         /// The columns of the second.
         second: Vec<String>,
     },
-    /// A column that is not in both motions.
+    /// A column that the two motions do not have in common.
     #[error("--columns: `{name}` is not a column of both motions; these are {}", shared.join(", "))]
     NotShared {
         /// The requested name.
@@ -68,7 +68,7 @@ pub enum CompareError {
         /// The columns and parameters of the model.
         known: Vec<String>,
     },
-    /// A derivative, which a table does not have.
+    /// A derivative, which is not in a table.
     #[error("--map: `{text}`: d() cannot be taken of columns; make it an entry of [outputs] in the model")]
     Derivative {
         /// The expression.

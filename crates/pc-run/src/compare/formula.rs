@@ -20,7 +20,7 @@ impl Formula {
         Ok(Formula { text: text.to_owned(), ast })
     }
 
-    /// Its values in the rows of a run.
+    /// The values of the expression in the rows of a run.
     ///
     /// # Errors
     /// [`CompareError::UnknownName`], [`CompareError::Derivative`].

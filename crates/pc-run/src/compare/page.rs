@@ -100,7 +100,7 @@ fn line(found: &Difference, width: usize) -> String {
 }
 
 impl Comparison {
-    /// What differs, a phrase for each.
+    /// A phrase for each thing that differs.
     pub(crate) fn differing(&self) -> Vec<String> {
         let phrase = |found: &Difference| {
             format!(

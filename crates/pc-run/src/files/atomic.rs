@@ -1,4 +1,4 @@
-//! Files that are replaced whole: written beside the old one, then put in its place.
+//! Files that are replaced as a whole: a new file is written beside the old one and then put in its place.
 
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, BufWriter, Seek, Write};
@@ -13,8 +13,7 @@ use crate::files::target::Target;
 pub type FileWriter<'f> = BufWriter<&'f mut File>;
 
 impl Target {
-    /// Puts what `write` writes there. Until all of it is on disk, an existing file stays
-    /// unchanged.
+    /// Puts what `write` writes at this place. Until all of it is on disk, an existing file stays unchanged.
     ///
     /// # Errors
     /// [`io::Error`]
@@ -25,7 +24,8 @@ impl Target {
         }
     }
 
-    /// The same for a file that did not exist; if it has been created since, it is kept.
+    /// As [`write`](Target::write), for a file that did not exist; if the file has been created in the
+    /// meantime, it is left as it is.
     ///
     /// # Errors
     /// [`io::Error`]
@@ -36,7 +36,8 @@ impl Target {
         made.persist_noclobber(&self.file).map(drop).map_err(|error| error.error)
     }
 
-    /// The same for a regular file; an error comes with what could be written.
+    /// As [`write`](Target::write), for a regular file; an error is returned together with the part that could
+    /// be written.
     pub(super) fn replace(
         &self,
         write: impl FnOnce(&mut FileWriter<'_>) -> io::Result<()>,
@@ -48,7 +49,7 @@ impl Target {
         }
     }
 
-    /// Moves a file made beside the place to it.
+    /// Moves a file that was made beside this place to the place itself.
     pub(super) fn put(&self, mut made: NamedTempFile) -> Result<(), (io::Error, Option<NamedTempFile>)> {
         let replaced = made.as_file().sync_all().and_then(|()| match fs::metadata(&self.file) {
             Err(_) => Ok(true),
@@ -62,7 +63,7 @@ impl Target {
     }
 }
 
-/// Writes to a file; after a failure, the unwritten rest is not tried again.
+/// Writes to a file; after a failure, no attempt is made to write the rest.
 pub(super) fn fill(
     file: &mut File,
     write: impl FnOnce(&mut FileWriter<'_>) -> io::Result<()>,
@@ -73,7 +74,7 @@ pub(super) fn fill(
     written
 }
 
-/// Gives a file the owner and mode of the one that it replaces; false if this is not permitted.
+/// Gives a file the owner and mode of the file that it replaces; false if this is not permitted.
 #[cfg(unix)]
 fn take_after(made: &File, old: &Metadata) -> io::Result<bool> {
     use std::os::unix::fs::{MetadataExt, fchown};
@@ -92,7 +93,7 @@ fn take_after(_: &File, _: &Metadata) -> io::Result<bool> {
     Ok(true)
 }
 
-/// Copies the complete file into one of another user, who remains its owner.
+/// Copies the complete file into a file of another user, who remains its owner.
 fn overwrite(made: &mut File, file: &Path) -> io::Result<()> {
     let mut old = OpenOptions::new().write(true).truncate(true).open(file)?;
     made.rewind()?;

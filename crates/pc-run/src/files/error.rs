@@ -1,4 +1,4 @@
-//! Errors of files.
+//! Errors about files.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use crate::category::Category;
 use crate::files::kept::Kept;
 
-/// Why a result has no file.
+/// Why a result could not be written to a file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FileError {
-    /// A file whose name does not say what to write.
+    /// A file whose name does not show which format to write.
     #[error("{option} {}: the name must end in {expected}", path.display())]
     UnknownExtension {
         /// The option that names the file.
@@ -20,7 +20,7 @@ pub enum FileError {
         /// The extensions that are accepted.
         expected: String,
     },
-    /// A file that cannot be written, found before anything is computed.
+    /// A file that cannot be written, as was found before anything was computed.
     #[error("cannot write {}; nothing was computed", path.display())]
     Place {
         /// The file.
@@ -31,7 +31,7 @@ pub enum FileError {
     /// A result that could not be written.
     #[error("cannot write {path}{kept}")]
     Write {
-        /// The file, or `standard output`.
+        /// The name of the file, or `standard output`.
         path: String,
         /// Where the result was kept.
         kept: Kept,
@@ -46,7 +46,7 @@ impl FileError {
         FileError::Write { path: path.display().to_string(), kept: Kept::Nowhere, source }
     }
 
-    /// A file that cannot be written, found before anything is computed.
+    /// The error for a file that cannot be written, as was found before anything was computed.
     pub fn no_place(path: &Path, source: io::Error) -> FileError {
         FileError::Place { path: path.to_owned(), source }
     }

@@ -1,19 +1,19 @@
-//! Where a result was kept that could not be written to its destination.
+//! Where a result that could not be written to its destination was kept.
 
 use std::fmt;
 use std::path::PathBuf;
 
-/// Where a result was kept that could not be written to its destination.
+/// Where a result that could not be written to its destination was kept.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Kept {
     /// Nowhere.
     #[default]
     Nowhere,
-    /// All of it in another file.
+    /// All of it was kept in another file.
     Elsewhere(PathBuf),
-    /// The first lines, beside the file.
+    /// The first lines were kept beside the file.
     Beginning(PathBuf),
-    /// The finished members of a sweep.
+    /// The finished members of a sweep were kept.
     Journal(PathBuf),
 }
 

@@ -1,7 +1,7 @@
-//! Files that are being written, beside those that they will replace.
+//! Files that are being written beside those that they will replace.
 //!
-//! The partial file of `a.csv` is `.a.csv.pc-a1B2c3.part`, with six random characters, and locked
-//! as long as its process lives: one that is not locked was left by a run that was killed.
+//! The partial file of `a.csv` is `.a.csv.pc-a1B2c3.part`, with six random characters. It is locked as long
+//! as its process lives: one that is not locked was left behind by a run that was killed.
 
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
@@ -12,10 +12,11 @@ use tempfile::{Builder, NamedTempFile};
 
 const SUFFIX: &str = ".part";
 const CHANCE: usize = 6;
-/// The longest part of the name of the file; most systems allow 255 bytes for the whole.
+/// The largest number of bytes taken from the name of the file; most systems allow 255 bytes for the whole
+/// name.
 const LONGEST: usize = 200;
 
-/// A new file beside `file`, locked.
+/// Creates and locks a new file beside `file`.
 pub(super) fn make(file: &Path) -> io::Result<NamedTempFile> {
     let prefix = prefix(file);
     loop {
@@ -37,7 +38,7 @@ pub(super) fn make(file: &Path) -> io::Result<NamedTempFile> {
     }
 }
 
-/// Removes what killed runs have left beside `file`; files that cannot be removed do no harm.
+/// Removes what killed runs have left behind beside `file`; files that cannot be removed do no harm.
 pub(super) fn remove_leftovers(file: &Path) {
     let prefix = prefix(file);
     let (prefix, suffix) = (prefix.as_encoded_bytes(), SUFFIX.as_bytes());
@@ -56,7 +57,7 @@ pub(super) fn remove_leftovers(file: &Path) {
     }
 }
 
-/// The directory that a file is in.
+/// The directory that contains a file.
 pub(super) fn directory(path: &Path) -> &Path {
     match path.parent() {
         Some(parent) if parent != Path::new("") => parent,
@@ -76,7 +77,7 @@ fn prefix(file: &Path) -> OsString {
     prefix
 }
 
-/// The mode of any new file, before the user's umask.
+/// The mode of any new file, before the user's umask is applied.
 #[cfg(unix)]
 fn new_file() -> fs::Permissions {
     use std::os::unix::fs::PermissionsExt;

@@ -1,4 +1,4 @@
-//! Rescue of a result that cannot be written to its destination.
+//! Rescues a result that cannot be written to its destination.
 
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -11,12 +11,12 @@ use crate::files::kept::Kept;
 use crate::files::target::Target;
 
 impl Target {
-    /// Puts a result at its place, or else in the directory of temporary files; failing that, if
-    /// `is_lines` says that single lines are of use, keeps the part that could be written beside
-    /// the file.
+    /// Writes a result to its place or, failing that, to the directory of temporary files; if this fails too
+    /// and `is_lines` says that single lines are of use, keeps the part that could be written beside the
+    /// file.
     ///
     /// # Errors
-    /// [`FileError::Write`] that says where it is.
+    /// [`FileError::Write`], which says where the result was kept.
     pub fn write_or_keep(
         &self,
         is_lines: bool,
@@ -44,10 +44,10 @@ impl Target {
     }
 }
 
-/// The most bytes of the name.
+/// The largest number of bytes taken from the name.
 const LONGEST: usize = 100;
 
-/// Writes the result to a new file in the directory of temporary files, if that is possible.
+/// Writes a result to a new file in the directory of temporary files, if possible, and returns its path.
 pub fn elsewhere(name: &str, write: impl FnOnce(&mut FileWriter<'_>) -> io::Result<()>) -> Option<PathBuf> {
     let end = &name[name.ceil_char_boundary(name.len().saturating_sub(LONGEST))..];
     let mut file = Builder::new().prefix("pc-").suffix(&format!("-{end}")).tempfile().ok()?;
@@ -55,7 +55,7 @@ pub fn elsewhere(name: &str, write: impl FnOnce(&mut FileWriter<'_>) -> io::Resu
     Some(file.keep().ok()?.1)
 }
 
-/// Keeps the complete lines of what could be written in FILE.partial, unless that exists.
+/// Keeps the complete lines of the part that could be written in FILE.partial, unless that file exists.
 pub(super) fn beside(file: &Path, mut part: NamedTempFile) -> Option<PathBuf> {
     let end = end_of_lines(part.as_file_mut()).ok().filter(|&end| end > 0)?;
     part.as_file().set_len(end).ok()?;

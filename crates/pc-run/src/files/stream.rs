@@ -13,26 +13,26 @@ use crate::files::target::Target;
 use crate::table::csv;
 use crate::table::rows::Cell;
 
-/// A table of comma-separated values that grows beside the file that it replaces at the end.
+/// A table of comma-separated values that grows in a file beside the one that it replaces at the end.
 #[derive(Debug)]
 pub struct Stream<'p> {
     place: &'p Target,
-    /// The file, once begun.
+    /// The file, once it has been begun.
     out: Option<BufWriter<NamedTempFile>>,
     /// The error that ended the writing.
     error: Option<io::Error>,
 }
 
-/// Bytes that are written at once.
+/// The number of bytes that are written at once.
 const BLOCK: usize = 1 << 20;
 
 impl<'p> Stream<'p> {
-    /// To a regular file.
+    /// A stream to a regular file.
     pub(crate) fn to(place: &'p Target) -> Stream<'p> {
         Stream { place, out: None, error: None }
     }
 
-    /// Makes the file, with the line of names.
+    /// Creates the file and writes the line of names.
     ///
     /// # Errors
     /// [`FileError::Write`]
@@ -46,12 +46,12 @@ impl<'p> Stream<'p> {
         begun.map_err(|source| FileError::cannot_write(self.place.path(), source))
     }
 
-    /// Whether the file has been made.
+    /// Whether the file has been created.
     pub fn is_begun(&self) -> bool {
         self.out.is_some()
     }
 
-    /// Writes a row; breaks where this fails.
+    /// Writes a row; breaks if this fails.
     pub(crate) fn row(&mut self, numbers: &[f64]) -> ControlFlow<()> {
         let Some(out) = &mut self.out else { return ControlFlow::Break(()) };
         if let Err(error) = csv::row(numbers.iter().copied().map(Cell::Number), out) {
@@ -66,10 +66,10 @@ impl<'p> Stream<'p> {
         self.error.is_some()
     }
 
-    /// Puts the table at its place, or its complete rows beside it.
+    /// Puts the table at its place or, failing that, keeps its complete rows beside it.
     ///
     /// # Errors
-    /// [`FileError::Write`] that says where it is.
+    /// [`FileError::Write`], which says where the table was kept.
     pub fn end(self) -> Result<(), FileError> {
         let Some(mut out) = self.out else { return Ok(()) };
         let flushed = self.error.map_or_else(|| out.flush(), Err);

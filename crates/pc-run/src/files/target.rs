@@ -1,4 +1,4 @@
-//! The place of a result, examined before it is computed.
+//! The place of a result, which is examined before the result is computed.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind};
@@ -7,22 +7,23 @@ use std::path::{Path, PathBuf};
 use crate::files::partial;
 use crate::files::partial::directory;
 
-/// The file that an option names; none for `-`, which is standard output.
+/// The file named by an option; none for `-`, which is standard output.
 pub fn file(path: Option<&Path>) -> Option<&Path> {
     path.filter(|path| *path != Path::new("-"))
 }
 
-/// The place of a file that is replaced whole, or of a device that is written through.
+/// The place of a file that is replaced as a whole, or of a device that is written directly.
 #[derive(Debug)]
 pub struct Target {
     /// The path as given.
     pub(super) asked: PathBuf,
-    /// The file that links lead to.
+    /// The file to which links lead.
     pub(super) file: PathBuf,
-    /// A character device or FIFO, open from the beginning and written directly.
+    /// A character device or FIFO, which is open from the beginning and written directly.
     pub(crate) device: Option<File>,
 }
 
+<<<<<<< HEAD:crates/pc-run/src/files/target.rs
 impl Target {
     /// A regular file, existing or not, in a directory in which files can be made; leftovers of
     /// killed runs are removed.
@@ -30,13 +31,22 @@ impl Target {
     /// # Errors
     /// [`io::Error`] that says why it cannot be written.
     pub fn regular(path: &Path) -> io::Result<Target> {
+=======
+impl Place {
+    /// The place of a regular file, existing or not, in a directory in which files can be created; leftovers
+    /// of killed runs are removed.
+    ///
+    /// # Errors
+    /// [`io::Error`] that says why the file cannot be written.
+    pub fn regular(path: &Path) -> io::Result<Place> {
+>>>>>>> eng5:crates/pc-run/src/files/place.rs
         match fs::metadata(path) {
             Ok(found) if !found.is_file() && !found.is_dir() => Err(refused("it is not a regular file")),
             _ => Target::new(path),
         }
     }
 
-    /// A file that does not exist yet, not even as a dangling link.
+    /// The place of a file that does not exist yet, not even as a dangling link.
     ///
     /// # Errors
     /// As for [`regular`](Target::regular).
@@ -51,8 +61,8 @@ impl Target {
         }
     }
 
-    /// A regular file, or a character device or FIFO, which is opened; opening a FIFO waits for its
-    /// reader.
+    /// The place of a regular file, or of a character device or FIFO, which is opened; opening a FIFO waits
+    /// for its reader.
     ///
     /// # Errors
     /// As for [`regular`](Target::regular).
@@ -88,7 +98,7 @@ impl Target {
     }
 }
 
-/// An error unless a file can be made beside `file`.
+/// An error unless a file can be created beside `file`.
 fn try_directory(file: &Path) -> io::Result<()> {
     let directory = directory(file);
     if !fs::metadata(directory).is_ok_and(|found| found.is_dir()) {
@@ -99,10 +109,10 @@ fn try_directory(file: &Path) -> io::Result<()> {
     partial::make(file).map(drop)
 }
 
-/// As many links as the system itself follows.
+/// The number of links that the system itself follows.
 const MOST_LINKS: usize = 40;
 
-/// The file that links lead to, which does not exist yet.
+/// The file to which links lead, which does not exist yet.
 fn end_of_links(path: &Path) -> io::Result<PathBuf> {
     let mut file = path.to_owned();
     for _ in 0..MOST_LINKS {

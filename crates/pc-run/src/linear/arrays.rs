@@ -7,7 +7,8 @@ use crate::table::array::Array;
 /// A missing number.
 const NONE: (f64, f64) = (f64::NAN, f64::NAN);
 
-/// `state`, `A`, `B`, `C`, `D`, `eigenvalues`, `modes` (as columns), and `M`, `G`, `K`, `F` where they are defined.
+/// The arrays `state`, `A`, `B`, `C`, `D`, `eigenvalues` and `modes` (as columns), and `M`, `G`, `K`, `F` where
+/// they are defined.
 pub(crate) fn of_linearization(linear: &Linearization) -> Vec<Array> {
     let eigenvalues: Vec<Vec<(f64, f64)>> =
         linear.spectrum.eigenvalues().iter().map(|value| vec![(value.real, value.imaginary)]).collect();
@@ -32,7 +33,8 @@ pub(crate) fn of_linearization(linear: &Linearization) -> Vec<Array> {
     all
 }
 
-/// `values` of the parameter and `eigenvalues`, a row for each value and a column for each branch.
+/// The arrays `values` of the parameter and `eigenvalues`, with a row for each value and a column for each
+/// branch.
 pub(crate) fn of_locus(locus: &RootLocus) -> Vec<Array> {
     let row = |i: usize| -> Vec<(f64, f64)> {
         let branches = locus.branches().iter();

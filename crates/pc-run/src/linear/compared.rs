@@ -1,4 +1,4 @@
-//! The matrices A, B, C and D, compared with differences of the second derivation's rates.
+//! Compares the matrices A, B, C and D with differences of the rates from a second derivation.
 
 use pc_analysis::Linearization;
 use pc_mech::Matrix;
@@ -8,12 +8,12 @@ use pc_verify::{Second, Slope, VerifyError};
 use crate::error::RunError;
 use crate::observer::Observer;
 
-/// Weights of the components in the direction in which A and C are compared, used in turn: none is a sum of
-/// others.
+/// The weights of the components in the direction along which A and C are compared, used in turn: none is a
+/// sum of others.
 const WEIGHTS: [f64; 5] = [1.0, -0.77, 0.59, -0.91, 0.68];
 
-/// Compares the matrices before they are returned: A and C along a direction of all components of
-/// the reduced state, B and D along each input. Says where this is not possible.
+/// Compares the matrices before they are returned: A and C along a direction of all components of the reduced
+/// state, B and D along each input. If this is not possible, the observer is told so.
 ///
 /// # Errors
 /// [`RunError::Verify`] if the derivations disagree.
@@ -72,7 +72,7 @@ fn agrees(
     })
 }
 
-/// Along the state first, then along each input.
+/// The slopes to compare: first along the state, then along each input.
 fn slopes(linear: &Linearization) -> Vec<Slope> {
     let Linearization { state_matrix: a, input_matrix: b, output_matrix: c, feedthrough: d, .. } = linear;
     let value =

@@ -10,13 +10,13 @@ use pc_print::short;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LinearError {
-    /// Two values for one name.
+    /// One name is given values twice.
     #[error("`{name}` is given values twice; leave one out")]
     Twice {
         /// The name.
         name: String,
     },
-    /// `--vary` of something that is neither parameter nor start value.
+    /// `--vary` names something that is neither a parameter nor has a start value.
     #[error("--vary: {0}")]
     Varied(UnknownValue),
     /// A name that is not a component of the state.
@@ -57,10 +57,10 @@ pub enum LinearError {
     NotSteady {
         /// √Σ f_i²
         residual: f64,
-        /// The state at which it ended.
+        /// The state at which the method ended.
         state: Vec<(String, f64)>,
     },
-    /// The start is not steady, and no other state is known to be reachable.
+    /// The start is not steady, and no other state is known to be reachable from it.
     #[error(
         "the start is not steady, as rates of norm {} show, and the functions of the coordinates that the frame keeps are not \
          known, so that no other state can be reached from it\n  help: declare these functions under [integrals], or start at \
@@ -99,7 +99,7 @@ pub enum LinearError {
         name: String,
         /// Its value.
         value: f64,
-        /// The numbers of components.
+        /// The two numbers of components.
         cause: BranchCount,
     },
     /// The search found nothing.
@@ -114,16 +114,16 @@ pub enum LinearError {
     NoEquilibrium {
         /// The number of starts.
         starts: usize,
-        /// How many converged.
+        /// How many of them converged.
         converged: usize,
     },
-    /// Any other error of the analysis.
+    /// Any other error in the analysis.
     #[error(transparent)]
     Analysis(AnalysisError),
 }
 
 impl LinearError {
-    /// An error of the analysis that concerns no name of the command line.
+    /// The error for an error of the analysis that is not about a name given on the command line.
     pub(crate) fn of(error: AnalysisError, of_linearization: bool) -> LinearError {
         match error {
             AnalysisError::DependsOnTime => LinearError::DependsOnTime { of_linearization },

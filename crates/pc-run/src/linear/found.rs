@@ -16,19 +16,19 @@ use crate::observer::Observer;
 use crate::table::csv::{field, header};
 use crate::table::file::TableFile;
 
-/// Width of a line after its number, for wrapping.
+/// The width at which a line is wrapped, not counting its number.
 const WIDTH: usize = 92;
 const LABEL: usize = 4;
 
 /// The largest value that Newton's method may leave in place of a zero.
 const ZERO: f64 = 1e-9;
 
-/// Where equilibria are looked for.
+/// Where to look for equilibria.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Search {
-    /// Lower and upper bounds of coordinates and first-order states, by their names.
+    /// Lower and upper bounds of coordinates and first-order states, with their names.
     pub bounds: Vec<(String, f64, f64)>,
-    /// The number of starts of Newton's method.
+    /// The number of points from which Newton's method is started.
     pub starts: usize,
 }
 
@@ -38,7 +38,7 @@ impl Default for Search {
     }
 }
 
-/// The equilibria of a model that a search has found.
+/// The equilibria that a search has found for a model.
 #[derive(Debug)]
 pub struct Found {
     title: String,
@@ -53,7 +53,7 @@ impl Found {
     /// Looks for the equilibria of a model.
     ///
     /// # Errors
-    /// [`RunError`], also where none is found.
+    /// [`RunError`], also if none is found.
     pub fn of(
         model: &Model,
         wanted: &Search,
@@ -86,7 +86,7 @@ impl Found {
         })
     }
 
-    /// A paragraph for each.
+    /// The equilibria as text, with a paragraph for each.
     pub fn text(&self) -> String {
         text(&self.title, &self.names, self.places, &self.equilibria)
     }
@@ -96,12 +96,13 @@ impl Found {
         json(&self.title, &self.names, &self.equilibria)
     }
 
-    /// A line for each: its state, energy, verdict, family, and real and imaginary part of each eigenvalue.
+    /// A line for each equilibrium: its state, energy, verdict and family, and the real and imaginary part of
+    /// each eigenvalue.
     pub fn csv(&self) -> String {
         csv(&self.names, &self.equilibria)
     }
 
-    /// Writes them to a file.
+    /// Writes the equilibria to a file.
     ///
     /// # Errors
     /// [`FileError::Write`], which says where the result was kept.
@@ -110,14 +111,14 @@ impl Found {
     }
 }
 
-/// The components of a state that are shown: all but the quasi-velocities that vanish.
+/// The components of a state that are shown: all except the quasi-velocities that vanish.
 fn shown<'a>(names: &'a [String], found: &FoundEquilibrium, places: usize) -> Vec<(&'a str, f64)> {
     let all = names.iter().zip(&found.state).enumerate();
     let is_shown = |&(i, (_, value)): &(usize, (&String, &f64))| i < places || value.abs() > ZERO;
     all.filter(is_shown).map(|(_, (name, &value))| (name.as_str(), value)).collect()
 }
 
-/// A paragraph for each; `places` is the number of coordinates.
+/// A paragraph for each equilibrium; `places` is the number of coordinates.
 fn text(title: &str, names: &[String], places: usize, found: &Equilibria) -> String {
     let mut text = format!("{}\n", one_line(title));
     for (number, one) in (1..).zip(&found.list) {
@@ -185,7 +186,8 @@ fn json(title: &str, names: &[String], found: &Equilibria) -> Value {
     })
 }
 
-/// A line for each: its state, energy, verdict, family, and real and imaginary part of each eigenvalue.
+/// A line for each equilibrium: its state, energy, verdict and family, and the real and imaginary part of
+/// each eigenvalue.
 fn csv(names: &[String], found: &Equilibria) -> String {
     let count = found.list.iter().map(|one| one.motion.eigenvalues.len()).max().unwrap_or(0);
     let mut columns = names.to_vec();

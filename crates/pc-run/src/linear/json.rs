@@ -1,10 +1,10 @@
-//! A linearization for programs; docs/linearization.md says what the members are.
+//! A linearization in a form for programs; docs/linearization.md says what the members are.
 
 use pc_analysis::{Linearization, Mode, SecondOrder};
 use pc_mech::Matrix;
 use serde_json::{Map, Value, json};
 
-/// Names with numbers.
+/// An object of names with numbers.
 pub(crate) fn map<'a>(pairs: impl IntoIterator<Item = (&'a str, f64)>) -> Value {
     let members: Map<String, Value> =
         pairs.into_iter().map(|(name, value)| (name.to_owned(), json!(value))).collect();
@@ -31,7 +31,7 @@ fn mode(mode: &Mode) -> Value {
     json!(mode.vector.as_ref().map(pairs))
 }
 
-/// The members of the object of a linearization, except those that identify it.
+/// The members of the JSON object of a linearization, except those that identify it.
 pub(crate) fn members(linear: &Linearization) -> Map<String, Value> {
     let pairs = |list: &[(String, f64)]| map(list.iter().map(|(name, value)| (name.as_str(), *value)));
     let eigenvalues: Vec<[f64; 2]> =

@@ -1,4 +1,4 @@
-//! From a model to its linearizer.
+//! Makes the linearizer of a model.
 
 use std::convert::Infallible;
 
@@ -28,8 +28,13 @@ pub(crate) struct Linearizable<'g> {
 
 impl<'g> Linearizable<'g> {
     /// # Errors
+<<<<<<< HEAD:crates/pc-run/src/linear/linearizable.rs
     /// [`RunError`] at the place in the file that causes it.
     pub(crate) fn new(model: &Model, graph: &'g Graph) -> Result<Linearizable<'g>, RunError> {
+=======
+    /// [`RunError`] at the place in the file that causes the error.
+    pub(crate) fn new(model: &Model, graph: &'g Graph) -> Result<Ground<'g>, RunError> {
+>>>>>>> eng5:crates/pc-run/src/linear/ground.rs
         let assembly = model.assemble(graph)?;
         if assembly.constraints.nonlinear().is_some() {
             return Err(LinearError::Nonlinear.into());
@@ -60,8 +65,8 @@ impl<'g> Linearizable<'g> {
         Ok(Linearizable { assembly, equations, linearizer, start })
     }
 
-    /// The same, with remarks on the equations, which are compared with a second derivation if
-    /// requested.
+    /// As [`new`](Ground::new), but also tells the observer remarks on the equations and, if requested,
+    /// compares them with a second derivation.
     ///
     /// # Errors
     /// As for [`new`](Linearizable::new), and [`RunError::Verify`].
@@ -80,7 +85,7 @@ impl<'g> Linearizable<'g> {
         Ok(ground)
     }
 
-    /// For each component of the state its place among the start values of the model; none if other
+    /// For each component of the state, its index among the start values of the model; none if other
     /// parameters or starts may lead to other equations, or if the start has to be solved for.
     pub(crate) fn places(&self, model: &Model) -> Option<Vec<usize>> {
         let is_fixed = self.assembly.constraints.redundant().is_empty();
@@ -93,8 +98,8 @@ impl<'g> Linearizable<'g> {
         state.map(|x| names.iter().position(|name| name == x)).collect()
     }
 
-    /// The stability of a steady state, as `pc check` judges it: by the second variation and by integrals too where the
-    /// first approximation does not decide, and without cyclic coordinates. None if the state is not steady.
+    /// The stability of a steady state, as `pc check` judges it: without cyclic coordinates, and using the second
+    /// variation and integrals if the first approximation does not decide. None if the state is not steady.
     pub(crate) fn stability(&self, linear: &Linearization) -> Option<Stability> {
         let verdict = linear.spectrum.verdict();
         if !linear.is_steady || verdict != Verdict::Undecided {
@@ -114,7 +119,7 @@ impl<'g> Linearizable<'g> {
         }
     }
 
-    /// The integrals known or found.
+    /// The integrals that are given or were found.
     pub(crate) fn integrals(&self) -> Integrals<'g> {
         integrals(&self.assembly, &self.equations)
     }
@@ -140,7 +145,7 @@ fn of_coordinates<'g>(equations: &Equations<'g>, integrals: &Integrals<'g>) -> V
     conserved.map(|integral| integral.value).filter(|f| !others.iter().any(|&y| f.depends_on(y))).collect()
 }
 
-/// An error of the analysis, at the place in the file that causes it, if there is one.
+/// An error of the analysis, located at the place in the file that causes it, if there is one.
 pub(crate) fn placed(assembly: &Assembly<'_>, error: AnalysisError, of_linearization: bool) -> RunError {
     match error {
         AnalysisError::Nonholo(error) => at(assembly, error),

@@ -1,4 +1,4 @@
-//! The motions near a state to first order.
+//! The motions near a state, to first order.
 
 use pc_analysis::{Linearization, Stability};
 use pc_model::Model;
@@ -26,13 +26,13 @@ pub struct Linearized {
     at: At,
     /// The linearization.
     pub linear: Linearization,
-    /// The stability, as `pc check` judges it; none of a state that is not steady.
+    /// The stability, as `pc check` judges it; none if the state is not steady.
     pub stability: Option<Stability>,
 }
 
 impl Linearized {
-    /// The linearization of a model at the chosen state; if it is to be verified, equations and
-    /// matrices are compared with a second derivation.
+    /// Linearizes a model at the chosen state; if `verify` is set, equations and matrices are compared with a
+    /// second derivation.
     ///
     /// # Errors
     /// [`RunError`]
@@ -61,7 +61,7 @@ impl Linearized {
         })
     }
 
-    /// The linearization for people.
+    /// The linearization as text for people.
     pub fn text(&self) -> String {
         text::page(&self.title, &self.linear, self.stability.as_ref(), self.at != At::Start)
     }
@@ -78,12 +78,12 @@ impl Linearized {
         Value::from(all)
     }
 
-    /// A line for each number.
+    /// The linearization as a table with a line for each number.
     pub fn csv(&self) -> String {
         csv(&self.linear)
     }
 
-    /// Writes it to a file.
+    /// Writes the linearization to a file.
     ///
     /// # Errors
     /// [`FileError::Write`], which says where the result was kept.
@@ -98,7 +98,7 @@ impl Linearized {
     }
 }
 
-/// Names for the rows and columns of the arrays, each list separated by commas.
+/// The names of the rows and columns of the arrays, as lists separated by commas.
 fn names(linear: &Linearization) -> Vec<(&'static str, String)> {
     let state: Vec<&str> = linear.state.iter().map(|(name, _)| name.as_str()).collect();
     let mut names = vec![
@@ -113,8 +113,8 @@ fn names(linear: &Linearization) -> Vec<(&'static str, String)> {
     names
 }
 
-/// A line for each number: its array, the names of its row and column, the number; real and
-/// imaginary parts have separate lines.
+/// A line for each number: its array, the names of its row and column, and the number; real and imaginary
+/// parts are on separate lines.
 fn csv(linear: &Linearization) -> String {
     let (y, u, h) = (&linear.components, &linear.inputs, &linear.outputs);
     let numbers = |count: usize| (1..=count).map(|i| i.to_string()).collect::<Vec<_>>();

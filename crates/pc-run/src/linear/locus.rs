@@ -1,4 +1,4 @@
-//! The eigenvalues over a parameter, as text and tables.
+//! The eigenvalues as functions of a parameter, as text and tables.
 
 use pc_analysis::{Eigenvalue, RootLocus};
 use pc_model::Model;
@@ -21,7 +21,7 @@ use crate::sweep::values::Vary;
 use crate::table::csv::field;
 use crate::table::file::TableFile;
 
-/// A root locus with its model and parameter.
+/// A root locus, with its model and parameter.
 #[derive(Debug)]
 pub struct Locus {
     title: String,
@@ -30,7 +30,7 @@ pub struct Locus {
     components: Vec<String>,
     /// The eigenvalues.
     pub locus: RootLocus,
-    /// The values that have no linearization, with the reason.
+    /// The values for which there is no linearization, each with the reason.
     pub missing: Vec<(f64, String)>,
 }
 
@@ -38,7 +38,7 @@ impl Locus {
     /// The eigenvalues of a model for each value of the varied quantity.
     ///
     /// # Errors
-    /// [`RunError`], also where no value has a linearization.
+    /// [`RunError`], also if there is no linearization for any value.
     pub fn of(
         model: &Model,
         vary: &Vary,
@@ -95,7 +95,7 @@ impl Locus {
         }
     }
 
-    /// A line for each value.
+    /// The eigenvalues as text, with a line for each value.
     pub fn text(&self) -> String {
         let branches = self.locus.branches();
         let header = std::iter::once(self.name.clone()).chain((1..=branches.len()).map(|i| format!("λ{i}")));
@@ -113,7 +113,7 @@ impl Locus {
         format!("{}\n{}", pc_print::one_line(&self.title), aligned(&table))
     }
 
-    /// The value, then real and imaginary part of each branch.
+    /// The columns: the value, then the real and imaginary part of each branch.
     pub fn csv(&self) -> String {
         let branches = self.locus.branches();
         let names = (1..=branches.len()).flat_map(|i| [format!("re{i}"), format!("im{i}")]);
@@ -147,7 +147,7 @@ impl Locus {
         })
     }
 
-    /// Real parts and imaginary parts over the parameter.
+    /// A picture of the real and imaginary parts over the parameter.
     pub fn picture(&self) -> Picture {
         let curves = |part: fn(&Eigenvalue) -> f64| {
             let points = |branch: &Vec<Option<Eigenvalue>>| {
@@ -165,7 +165,7 @@ impl Locus {
         }
     }
 
-    /// Writes it to a file.
+    /// Writes the locus to a file.
     ///
     /// # Errors
     /// [`FileError::Write`], which says where the result was kept.

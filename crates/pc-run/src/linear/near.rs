@@ -1,4 +1,4 @@
-//! The linearizations of one model, at the state that is chosen, for any values.
+//! The linearizations of one model, at the chosen state, for any values of its parameters and start.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -10,12 +10,12 @@ use crate::linear::error::LinearError;
 use crate::linear::linearizable::{Linearizable, placed};
 use crate::linear::state::{At, Cyclic, StateChoice};
 
-/// Which cyclic coordinates are kept by default.
+/// Which cyclic coordinates are kept if the options do not say so.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum CyclicChoice {
-    /// All at an equilibrium, none for a motion.
+    /// All at an equilibrium, none for a steady motion.
     OfState,
-    /// None: the number of components is the same for all values of a parameter.
+    /// None, so that the number of components is the same for all values of a parameter.
     None,
 }
 
@@ -55,13 +55,13 @@ pub(crate) fn near(
 pub(crate) struct Varied {
     t: f64,
     state: StateChoice,
-    /// The compiled equations, with the place of each component of the state among the start values; none if other
+    /// The compiled equations, with the index of each component of the state among the start values; none if other
     /// values may lead to other equations.
     common: Option<(Mutex<Linearizer>, Vec<usize>)>,
 }
 
 impl Varied {
-    /// Linearizations near a model, which begins with its own values.
+    /// Prepares linearizations of a model for values near its own.
     pub(crate) fn of(model: &Model, ground: &Linearizable<'_>, state: &StateChoice) -> Varied {
         let places = ground.places(model);
         Varied {
@@ -74,8 +74,8 @@ impl Varied {
     /// The linearization of the model with other values.
     ///
     /// # Errors
-    /// [`RunError`]; if the equations of the model depend on the values, at the place in the file that causes
-    /// it.
+    /// [`RunError`]; if the equations of the model depend on the values, it is located at the place in the
+    /// file that causes it.
     pub(crate) fn linearization(&self, model: &Model) -> Result<Linearization, RunError> {
         let Some((linearizer, places)) = &self.common else {
             let graph = model.graph();
@@ -94,10 +94,11 @@ impl Varied {
         found.map_err(|error| LinearError::of(error, true).into())
     }
 
-    /// The most components that a linearization has: those at the unchanged start of the model.
+    /// The largest number of components that a linearization has: the number at the unchanged start of the
+    /// model.
     ///
     /// # Errors
-    /// [`RunError`] where the parts of the equations are not defined there.
+    /// [`RunError`] if the parts of the equations are not defined there.
     pub(crate) fn most_components(&self, ground: &mut Linearizable<'_>) -> Result<usize, RunError> {
         let cyclic = match (self.state.at, self.state.cyclic) {
             (At::Start, _) | (_, Some(Cyclic::Keep)) => CyclicCoordinates::KeptAtRest,

@@ -9,12 +9,12 @@ use crate::table::array::Array;
 use crate::table::file::{Format, TableFile};
 use crate::table::{mat, npz};
 
-/// A result in every format.
+/// A result that can be written in every format.
 pub(crate) struct Contents<'a> {
     pub(crate) json: &'a Value,
     pub(crate) csv: &'a str,
     pub(crate) arrays: &'a [Array],
-    /// Names for the rows and columns of the arrays, each list separated by commas.
+    /// The names of the rows and columns of the arrays, as lists separated by commas.
     pub(crate) texts: &'a [(&'a str, String)],
 }
 

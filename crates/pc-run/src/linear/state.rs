@@ -3,12 +3,13 @@
 /// The kind of state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum At {
-    /// The equilibrium or steady motion near the start: all but the cyclic coordinates rest.
+    /// The equilibrium or steady motion near the start: all components are constant except the cyclic
+    /// coordinates.
     #[default]
     Steady,
-    /// The equilibrium near the start with all quasi-velocities 0.
+    /// The equilibrium near the start, with all quasi-velocities 0.
     Rest,
-    /// The start, steady or not.
+    /// The start itself, whether it is steady or not.
     Start,
 }
 
@@ -48,14 +49,14 @@ impl Cyclic {
     }
 }
 
-/// The state, and which components of it to keep.
+/// The state about which to linearize, and which components of it to keep.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct StateChoice {
     /// The kind of state.
     pub at: At,
-    /// Components that keep their start values while a steady state is looked for.
+    /// The components that keep their start values while a steady state is sought.
     pub hold: Vec<String>,
-    /// The cyclic coordinates that are kept; by default all at an equilibrium and at the start,
-    /// none for a motion and where values are varied.
+    /// Which cyclic coordinates are kept; by default all at an equilibrium and at the start, and none for a
+    /// steady motion or where values are varied.
     pub cyclic: Option<Cyclic>,
 }

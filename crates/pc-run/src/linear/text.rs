@@ -1,4 +1,4 @@
-//! A linearization for people.
+//! A linearization as text for people.
 
 use std::fmt::Write as _;
 
@@ -8,19 +8,19 @@ use pc_print::{columns, eigenvalues_in_words, one_line, stability_in_words};
 
 use pc_print::{labelled, short, small, wrapped};
 
-/// Width of a line after its label, for wrapping.
+/// The width at which a line is wrapped, not counting its label.
 const WIDTH: usize = 84;
 const LABEL: usize = 13;
 
 /// The largest value that Newton's method may leave in place of a zero.
 const ZERO: f64 = 1e-9;
 
-/// Six digits; 0 for what Newton's method leaves in place of a zero.
+/// The value with six digits; 0 for what Newton's method leaves in place of a zero.
 pub(crate) fn rounded(value: f64) -> String {
     if value.abs() <= ZERO { "0".to_owned() } else { short(value, 6) }
 }
 
-/// The whole page; `moved` says whether the state was found from the start.
+/// The whole page; `moved` says whether the state was found by moving away from the start.
 pub(crate) fn page(
     title: &str,
     linear: &Linearization,
@@ -76,7 +76,7 @@ pub(crate) fn page(
     text
 }
 
-/// The kind of state, and where it is.
+/// The kind of state, and where it was found.
 fn place(linear: &Linearization, moved: bool) -> String {
     let kind = match (linear.is_steady, linear.cyclic.is_empty()) {
         (false, _) => return format!("the start, not steady: rates of norm {}", small(linear.residual)),
@@ -90,7 +90,8 @@ fn place(linear: &Linearization, moved: bool) -> String {
     }
 }
 
-/// A line for each eigenvalue, conjugate ones together, with the components of its eigenvector that are not zero.
+/// A line for each eigenvalue, or for two conjugate ones together, with the nonzero components of the
+/// eigenvector.
 fn modes(text: &mut String, linear: &Linearization) {
     let modes = linear.modes.iter().filter(|mode| mode.eigenvalue.imaginary >= 0.0);
     let shown = modes.filter_map(|mode| {
@@ -117,7 +118,7 @@ fn pad(text: &str, width: usize) -> String {
     " ".repeat(width.saturating_sub(columns(text)))
 }
 
-/// Four digits of each part.
+/// The value with four digits for each part.
 pub(crate) fn complex((re, im): (f64, f64)) -> String {
     let part = |value: f64| if value.abs() <= ZERO { "0".to_owned() } else { short(value, 4) };
     match (part(re).as_str(), part(im.abs()).as_str()) {

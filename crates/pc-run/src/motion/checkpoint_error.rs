@@ -1,11 +1,11 @@
-//! Errors of checkpoints.
+//! Errors about checkpoints.
 
 use std::io;
 use std::path::PathBuf;
 
 use pc_solve::CheckpointError;
 
-/// Why a run cannot continue from a file, or keep checkpoints there.
+/// Why a run cannot continue from a file, or keep checkpoints in it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckpointFileError {
@@ -17,7 +17,7 @@ pub enum CheckpointFileError {
         /// Why.
         source: io::Error,
     },
-    /// The file is not a checkpoint, or a damaged one.
+    /// The file is not a checkpoint, or is damaged.
     #[error("--resume {}: {source}; start afresh without --resume", path.display())]
     Unusable {
         /// The file.
@@ -25,12 +25,12 @@ pub enum CheckpointFileError {
         /// Why.
         source: CheckpointError,
     },
-    /// The checkpoint is that of another run.
+    /// The checkpoint belongs to another run.
     #[error("--resume {}: the checkpoint is from a run with {what}; repeat that command, or start afresh without --resume", path.display())]
     OtherRun {
         /// The file.
         path: PathBuf,
-        /// What is different, then and now.
+        /// What is different now, with the value then and now.
         what: String,
     },
     /// A checkpoint would overwrite something else.
@@ -39,7 +39,7 @@ pub enum CheckpointFileError {
         /// The file.
         path: PathBuf,
     },
-    /// `--every` where no checkpoint is kept.
+    /// `--every` is given although no checkpoint is kept.
     #[error("--every sets how often checkpoints are written; give --checkpoint FILE too")]
     Nowhere,
 }

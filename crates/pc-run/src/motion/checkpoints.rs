@@ -20,23 +20,23 @@ use crate::motion::sensitivities::Derivatives;
 use crate::observer::Observer;
 use crate::plan::Plan;
 
-/// The least time between two writes of the file, in multiples of the time of the last write. It
+/// The shortest time between two writes of the file, in multiples of the time that the last write took. It
 /// does not affect the numbers.
 const PATIENCE: u32 = 20;
 
-/// The files that a run keeps checkpoints in, and begins at.
+/// The files in which a run keeps its checkpoints, and from which it continues.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct CheckpointFiles {
-    /// The file to keep checkpoints in.
+    /// The file in which to keep checkpoints.
     pub checkpoint: Option<PathBuf>,
-    /// Internal steps from one checkpoint to the next.
+    /// The number of internal steps from one checkpoint to the next.
     pub every: Option<NonZeroU64>,
-    /// The file to continue from; further checkpoints are kept there unless another is named.
+    /// The file from which to continue; further checkpoints are kept in it unless another file is named.
     pub resume: Option<PathBuf>,
 }
 
 impl CheckpointFiles {
-    /// The file in which checkpoints are kept, if they are.
+    /// The file in which checkpoints are kept, if any are.
     pub fn path(&self) -> Option<&Path> {
         self.checkpoint.as_deref().or(self.resume.as_deref())
     }
@@ -48,12 +48,12 @@ pub(crate) struct Checkpoints {
     place: Target,
     every: NonZeroU64,
     identity: Identity,
-    /// The checkpoint to begin at; the start if there is none.
+    /// The checkpoint from which to begin; if there is none, the run begins at the start.
     from: Option<Checkpoint>,
 }
 
 impl Checkpoints {
-    /// No checkpoints, those written to a file, or those continued from a file.
+    /// Checkpoints that are written to a file, and possibly continued from one; none if no file is given.
     ///
     /// # Errors
     /// [`CheckpointFileError`]; [`FileError::Place`] if the file cannot be written.
@@ -82,7 +82,7 @@ impl Checkpoints {
         Ok(Some(checkpoints))
     }
 
-    /// Reads the checkpoint to continue from.
+    /// Reads the checkpoint from which to continue.
     fn take_up(&mut self, path: &Path, every: Option<NonZeroU64>) -> Result<(), CheckpointFileError> {
         let bytes =
             read(path).map_err(|source| CheckpointFileError::Read { path: path.to_owned(), source })?;
@@ -100,8 +100,8 @@ impl Checkpoints {
         Ok(())
     }
 
-    /// Integrates the motion of `flow` from its start or from the checkpoint, with its derivatives, if any
-    /// are requested.
+    /// Integrates the motion of `flow` from its start or from the checkpoint, together with its derivatives
+    /// if any are requested.
     ///
     /// # Errors
     /// [`FileError::Write`] if the file cannot be written at the beginning; later failures are only
@@ -158,7 +158,7 @@ impl Checkpoints {
     }
 }
 
-/// Bytes of a file that show whether it is a checkpoint.
+/// The number of bytes of a file that are enough to tell whether it is a checkpoint.
 const BEGINNING: u64 = 256;
 
 fn beginning(path: &Path) -> io::Result<Vec<u8>> {
@@ -167,11 +167,11 @@ fn beginning(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The bytes of a checkpoint; only the beginning of any other file.
+/// The bytes of a checkpoint, or only the beginning of any other file.
 fn read(path: &Path) -> io::Result<Vec<u8>> {
     let bytes = beginning(path)?;
     if Checkpoint::is_one(&bytes) { fs::read(path) } else { Ok(bytes) }
 }
 
-/// Name of the number of steps between checkpoints in an identity.
+/// The name that the number of steps between checkpoints has in an identity.
 const INTERVAL: &str = "--every";

@@ -1,4 +1,4 @@
-//! A model in one form, derived and compiled once for any number of runs.
+//! The equations of a model in one form, derived and compiled once for any number of runs.
 
 use std::sync::Arc;
 
@@ -9,24 +9,26 @@ use pc_report::dropped;
 /// The equations of a model in one form, compiled, with remarks on them.
 #[derive(Clone)]
 pub struct Derived {
-    /// The equations, with the values that the model has.
+    /// The equations, with the values of the model.
     pub flow: Flow,
-    /// The equations as a prototype for other values; none if other values may change more than numbers.
+    /// The equations as a prototype for other values; none if other values may change more than the numbers
+    /// in them.
     pub prototype: Option<Arc<Prototype>>,
     /// Remarks on the equations.
     pub(crate) facts: Facts,
 }
 
-/// Facts about equations after they are compiled.
+/// Facts about the equations that are remembered after they are compiled.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Facts {
     /// The constraints that were dropped, each with the reason.
     pub(crate) dropped: Vec<(String, String)>,
-    /// Whether forces or the Lagrangian jump where the state changes.
+    /// Whether forces or the Lagrangian are discontinuous functions of the state.
     pub(crate) jumps: bool,
     /// Whether an event changes the state.
     pub(crate) has_resets: bool,
-    /// Whether nothing depends on time and neither forces nor events change the energy.
+    /// Whether the energy is conserved: nothing depends on time, and neither forces nor events change the
+    /// energy.
     pub(crate) keeps_energy: bool,
 }
 
@@ -46,17 +48,17 @@ impl Derived {
     /// The equations of an assembled model in a form.
     ///
     /// # Errors
-    /// [`ModelError`] at the place in the text that causes it.
+    /// [`ModelError`] at the place in the text that causes the error.
     pub fn of(model: &Model, assembly: &Assembly<'_>, form: Variables) -> Result<Derived, ModelError> {
         let flow = Flow::new(model, assembly, form)?;
         let prototype = Prototype::of(model, assembly, form, flow.clone()).map(Arc::new);
         Ok(Derived { prototype, facts: Facts::of(assembly), flow })
     }
 
-    /// The same for a model with other values.
+    /// The same equations for a model with other values.
     ///
     /// # Errors
-    /// [`ModelError`] where the model has to be derived anew and cannot be.
+    /// [`ModelError`] if the equations have to be derived anew and cannot be.
     pub fn renewed(&self, model: &Model, form: Variables, t_start: f64) -> Result<Derived, ModelError> {
         match self.prototype.as_ref().and_then(|prototype| prototype.flow(model, t_start)) {
             Some(flow) => Ok(Derived { flow, prototype: self.prototype.clone(), facts: self.facts.clone() }),

@@ -1,4 +1,4 @@
-//! `pc run --estimate`: the global errors of the columns of a motion, from its companion.
+//! `pc run --estimate`: the global errors of the columns of a motion, estimated by a companion motion.
 
 use std::ops::{ControlFlow, Range};
 
@@ -11,15 +11,15 @@ use crate::plan::Plan;
 use crate::plan::tolerances::Tolerances;
 use pc_print::short;
 
-/// An error of this fraction of the largest values has grown to the size of the motion …
+/// An error counts as grown to the size of the motion if it exceeds this fraction of the largest values.
 const GROWN: f64 = 0.1;
-/// … if it is more than these absolute tolerances.
+/// An error that has grown to the size of the motion also exceeds this many absolute tolerances.
 const TOLERANCES: f64 = 10.0;
 
-/// A summary of the global errors of a motion, which the table has row by row.
+/// A summary of the global errors of a motion; the table contains these errors row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
-    /// The method of the companion.
+    /// The integration method of the companion.
     pub method: Method,
     /// Its relative tolerance.
     pub rtol: f64,
@@ -27,13 +27,13 @@ pub struct Estimate {
     pub rows: usize,
     /// The time at which the error has grown to the size of the motion.
     pub grown: Option<f64>,
-    /// The times of the rows before which an event occurred in one of the motions alone.
+    /// The times of the rows before which an event occurred in only one of the two motions.
     pub beyond_events: Vec<f64>,
-    /// Why later rows have no errors.
+    /// The reason why later rows have no errors, if that is so.
     pub incomplete: Option<String>,
 }
 
-/// Integrates the companion of a motion, with a flow as it was before the motion.
+/// Integrates the companion of a motion, with the flow in its state before the motion.
 pub(crate) fn companion(
     flow: &mut Flow,
     (plan, options): (&Plan, &Options),
@@ -50,7 +50,8 @@ pub(crate) fn companion(
 }
 
 impl Estimate {
-    /// The errors of all columns but t and derivatives, appended to the table; NaN where they are not known.
+    /// Appends the errors of all columns, except t and derivatives, to the table and returns their summary;
+    /// they are NaN where they are not known.
     pub(crate) fn of(
         estimate: &ErrorEstimate,
         flow: &mut Flow,
@@ -84,7 +85,7 @@ impl Estimate {
     }
 }
 
-/// Why a companion does not reach the end of the motion.
+/// Why a companion did not reach the end of the motion.
 fn why(estimate: &ErrorEstimate, flow: &Flow) -> String {
     let t = short(estimate.beside().statistics().current_time, 10);
     match (estimate.failure(), estimate.ending()) {
@@ -101,8 +102,8 @@ fn why(estimate: &ErrorEstimate, flow: &Flow) -> String {
     }
 }
 
-/// The time of the first row, other than the rows `others`, in which |errors| of the coordinates, of the velocities or of the
-/// first-order states exceed a tenth of their largest values and `negligible`.
+/// The time of the first row, other than the rows `others`, in which the norm of the errors of the coordinates, of the
+/// velocities or of the first-order states exceeds both a tenth of that of their largest values and `negligible`.
 fn grown(table: &Table, negligible: f64, others: &[usize]) -> Option<f64> {
     let kinds = [table.coordinates(), table.quasi_velocities(), table.states()];
     let norm = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();

@@ -1,4 +1,4 @@
-//! The motion between its rows, with the points that pictures need.
+//! The motion between its rows, with as many points as pictures need.
 
 use std::ops::ControlFlow;
 
@@ -9,15 +9,15 @@ use crate::motion::table::Table;
 use crate::observer::Observer;
 use crate::plan::Plan;
 
-/// The most numbers in memory.
+/// The largest number of numbers held in memory.
 const MOST_NUMBERS: usize = 4_000_000;
 
-/// The fewest points of a motion, unless its steps would then have more than the most points of a step.
+/// The smallest number of points of a motion, unless a step would then have more than `MOST_POINTS`.
 const FEWEST: usize = 2000;
 const MOST_POINTS: usize = 60;
 
-/// Points of a step, enough to show the polynomial of the method as a curve: steps of multistep
-/// methods are short compared with an oscillation, a step of Taylor's method can be half of one.
+/// The number of points in a step, enough to show the polynomial of the method as a curve: steps of multistep
+/// methods are short compared with an oscillation, while a step of Taylor's method can be half of one.
 fn points(method: Method) -> usize {
     match method {
         Method::Adams | Method::Bdf => 3,
@@ -26,12 +26,12 @@ fn points(method: Method) -> usize {
     }
 }
 
-/// The relative difference up to which an integrator takes two times as equal.
+/// The relative difference up to which an integrator treats two times as equal.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
-/// The time at which a table of inputs is read at an end `t` of a step that contains `inside`: for
-/// a break after `inside` it is the last number before the break, for one before `inside` the break
-/// itself. So a jump shows both of its values.
+/// The time at which a table of inputs is read at an end `t` of a step that contains `inside`: for a break
+/// after `inside`, it is the last number before the break; for one before `inside`, it is the break itself.
+/// In this way, both values at a jump are shown.
 fn side(breaks: &[f64], t: f64, inside: f64) -> f64 {
     let near = ROUNDINGS * t.abs();
     let first = breaks.partition_point(|&time| time < t - near);
@@ -42,9 +42,9 @@ fn side(breaks: &[f64], t: f64, inside: f64) -> f64 {
     }
 }
 
-/// The states at the ends of steps and between them, with those before and after events and jumps
-/// of inputs, as a table; none if they do not reach as far as `reached`. The motion is integrated
-/// again, so that its rows do not depend on this.
+/// A table of the states at the ends of steps and between them, including those before and after events and
+/// jumps of inputs; none if they do not reach as far as `reached`. The motion is integrated again, so that
+/// its rows do not depend on this.
 pub(crate) fn table(
     flow: &mut Flow,
     (plan, options): (&Plan, &Options),

@@ -1,5 +1,5 @@
-//! Everything that the numbers of a motion, or of other work on a model, depend on: stored with interrupted work, so that only the
-//! same command continues it.
+//! Everything on which the numbers of a motion, or of other work on a model, depend. It is stored with interrupted work, so that
+//! only the same command can continue it.
 
 use pc_model::Model;
 use pc_model::document::AbsoluteTolerance;
@@ -7,7 +7,7 @@ use pc_solve::Accumulation;
 
 use crate::plan::Plan;
 
-/// Names and values in the order of their importance.
+/// Names and values, in order of importance.
 pub(crate) type Identity = Vec<(String, String)>;
 
 /// The identity of the motion of a model.
@@ -38,8 +38,8 @@ fn given(atol: &AbsoluteTolerance) -> String {
     if given.is_empty() { "by scale".to_owned() } else { given.join(",") }
 }
 
-/// The identity of other work on a model: version, parameters, start, what the work itself depends on, and
-/// the text of the model.
+/// The identity of other work on a model: version, parameters, start, everything on which the work itself
+/// depends, and the text of the model.
 pub(crate) fn of_work(model: &Model, own: impl IntoIterator<Item = (&'static str, String)>) -> Identity {
     let entry = |name: &str, value: String| (name.to_owned(), value);
     let mut identity = vec![entry("pc", env!("CARGO_PKG_VERSION").to_owned())];
@@ -67,7 +67,7 @@ pub(crate) fn of_work(model: &Model, own: impl IntoIterator<Item = (&'static str
     identity
 }
 
-/// The first difference, in words.
+/// A phrase that describes the first difference.
 pub(crate) fn difference(then: &Identity, now: &Identity) -> Option<String> {
     let value = |identity: &Identity, name: &str| {
         identity.iter().find(|(known, _)| known == name).map_or("(not there)", |(_, value)| value).to_owned()

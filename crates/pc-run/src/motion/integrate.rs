@@ -1,4 +1,4 @@
-//! From a model and its plan to a run.
+//! Integrates the motion of a model according to a plan.
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -28,36 +28,38 @@ use crate::plan::Wishes;
 use crate::plan::memory;
 use crate::plan::tolerances::{Tolerances, note_largest};
 
-/// The parts of a run besides its rows; none by default.
+/// The parts of a run in addition to its rows; none by default.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Besides {
     /// Whether the equations are compared with a second derivation, at the start and, where this is
     /// fast, at the end.
     pub verify: bool,
-    /// Whether the run has the motion between its rows, with the points that smooth curves need.
+    /// Whether the run contains the motion between its rows too, with as many points as smooth curves need.
     pub fine: bool,
-    /// Whether the observer is told the remarks on the equations.
+    /// Whether the observer is told remarks on the equations.
     pub remarks: bool,
-    /// Whether the table has the errors of its columns.
+    /// Whether the table contains the errors of its columns.
     pub estimate: bool,
     /// Checkpoints.
     pub checkpoints: CheckpointFiles,
 }
 
 impl Besides {
-    /// For a motion to be shown: it is verified, and has the points of smooth curves.
+    /// The parts needed for a motion that is to be shown: it is verified, and has enough points for smooth
+    /// curves.
     pub fn shown() -> Besides {
         Besides { verify: true, fine: true, remarks: true, ..Besides::default() }
     }
 }
 
 impl Run {
-    /// Derives, compiles and integrates the motion of a model. Whatever the form, the table shows
-    /// quasi-velocities. Rows that are too many for memory go to the `stream` as they are computed.
+    /// Derives, compiles and integrates the motion of a model. The table shows quasi-velocities, whatever the
+    /// form of the equations. If there are too many rows for memory, they go to the `stream` as they are
+    /// computed.
     ///
     /// # Errors
-    /// [`RunError`] if there is no motion at all, or the second derivation disagrees; an incomplete
-    /// motion is a run.
+    /// [`RunError`] if there is no motion at all, or the second derivation disagrees; an incomplete motion is
+    /// not an error.
     pub fn of(
         model: &Model,
         wishes: &Wishes,
@@ -69,7 +71,7 @@ impl Run {
         Run::of_assembly(model, &model.assemble(&graph)?, wishes, besides, stream, observer)
     }
 
-    /// The same of a model that has been assembled.
+    /// As [`of`](Run::of), for a model that has been assembled.
     ///
     /// # Errors
     /// As for [`of`](Run::of).
@@ -85,7 +87,7 @@ impl Run {
         integrated((model, assembly), Plan::form(model, wishes), plan, besides, stream, observer)
     }
 
-    /// The same by a plan.
+    /// As [`of`](Run::of), following a plan.
     ///
     /// # Errors
     /// As for [`of`](Run::of).
@@ -99,8 +101,9 @@ impl Run {
         integrated((model, &model.assemble(&graph)?), plan.form, || Ok(plan), besides, None, observer)
     }
 
-    /// The same for equations that have been derived, with the values that the model has. They are
-    /// derived again only to be verified, or where a lost integral or inertia is to be explained.
+    /// As [`of`](Run::of), for equations that have been derived, with the values of the model. They are
+    /// derived again only if they are to be verified, or if a lost integral or lost inertia has to be
+    /// explained.
     ///
     /// # Errors
     /// As for [`of`](Run::of).
@@ -118,7 +121,7 @@ impl Run {
     }
 }
 
-/// The plan comes once the model is known to be sound.
+/// The plan is made only once the model is known to be valid.
 fn integrated(
     (model, assembly): (&Model, &Assembly<'_>),
     form: Variables,
@@ -139,7 +142,7 @@ fn integrated(
 /// A motion to be integrated.
 struct Integration<'r, 'g> {
     model: &'r Model,
-    /// None if it has not been derived for this run.
+    /// None if the model has not been assembled for this run.
     assembly: Option<&'r Assembly<'g>>,
     facts: Facts,
     flow: Flow,
@@ -148,7 +151,7 @@ struct Integration<'r, 'g> {
     observer: &'r dyn Observer,
 }
 
-/// A motion as far as it was integrated.
+/// A motion, as far as it was integrated.
 struct Solved {
     solution: Solution,
     error: Option<SolveError>,
@@ -250,7 +253,7 @@ impl Integration<'_, '_> {
         })
     }
 
-    /// Does something with the assembled model, which is assembled first if necessary.
+    /// Runs `work` on the assembled model, which is assembled first if necessary.
     fn assembled<T>(&self, work: impl FnOnce(&Assembly<'_>) -> T) -> Result<T, RunError> {
         match self.assembly {
             Some(assembly) => Ok(work(assembly)),
@@ -261,12 +264,12 @@ impl Integration<'_, '_> {
         }
     }
 
-    /// Whether the motion goes from its start to its end without derivatives and checkpoints.
+    /// Whether the motion is integrated without derivatives and checkpoints.
     fn is_plain(&self) -> bool {
         self.besides.checkpoints.path().is_none() && self.plan.sensitivities.is_empty()
     }
 
-    /// The stream, if the rows are to go there; an error if they would take too much memory.
+    /// The stream, if the rows are to go to it; an error if they would take too much memory.
     fn within_memory<'s, 'p>(
         &self,
         stream: Option<&'s mut Stream<'p>>,
@@ -315,7 +318,8 @@ impl Integration<'_, '_> {
         Ok(Solved { solution, error, wall: start.elapsed(), steps })
     }
 
-    /// Compares the end, derivatives there, and the states after resets.
+    /// Compares the end of the motion, the derivatives there, and the states after resets with the second
+    /// derivation.
     fn verify(
         &self,
         verification: &mut Verification,
@@ -338,9 +342,9 @@ impl Integration<'_, '_> {
         verification.compare_resets(model, assembly, flow, &solution.occurrences)
     }
 
-    /// The events whose functions are zero at the start and go on in the direction of the event:
-    /// this is not a passage. The sides are those at the end of the first step, or of the part of
-    /// it before an event. None are known for a motion that was resumed.
+    /// The events whose functions are zero at the start and then move in the direction of the event, which
+    /// does not count as an occurrence. The direction is judged at the end of the first step, or of the part
+    /// of it before an event. The list is empty for a motion that was resumed.
     fn passed_at_start(&mut self, steps: &StepStates) -> Vec<usize> {
         let Integration { flow, plan, besides, .. } = self;
         let Some((t, y)) = steps.iter().next().filter(|_| besides.checkpoints.resume.is_none()) else {
@@ -367,7 +371,7 @@ impl Integration<'_, '_> {
         }
     }
 
-    /// An integral that a completed motion has lost; a reset may change them.
+    /// An integral that a completed motion has lost, if any; a reset may change integrals.
     fn lost(
         &mut self,
         ending: &Ending,
@@ -404,7 +408,7 @@ fn names_of_events(flow: &Flow) -> Vec<String> {
     flow.events.events().iter().map(|event| event.name().to_owned()).collect()
 }
 
-/// The start values, from the text or the options.
+/// The start values given by the text or the options.
 fn written_start(model: &Model) -> Vec<(String, f64)> {
     model.start().map(|values| model.start_names().into_iter().zip(values).collect()).unwrap_or_default()
 }

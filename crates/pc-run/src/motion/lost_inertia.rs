@@ -1,18 +1,19 @@
-//! The velocity that has lost its inertia where a motion cannot go on.
+//! The velocity that has lost its inertia where a motion cannot continue.
 
 use pc_algebra::Matrix;
 use pc_mech::SingularValues;
 use pc_model::{Assembly, Flow, Variables};
 
-/// If the mass matrix is this near to a singular one, compared with that at the start, it is the reason for
-/// short steps.
+/// If the mass matrix is this close to a singular one, compared with that at the start, it is the reason why
+/// steps are short.
 const VANISHES: f64 = 1e-6;
 
-/// The most velocities for which the mass matrix is computed to find this.
+/// The largest number of velocities for which the mass matrix is computed to find this out.
 const MOST_VELOCITIES: usize = 12;
 
 /// The velocity in whose direction the mass matrix is nearly singular at `state`, and the fraction of its inertia that
-/// is left: the ratio of the least singular value of D M D there to that at the start, with D² = 1/diag M at the start.
+/// is left: the ratio of the smallest singular value of D M D there to that at the start, with D² = 1/diag M at the
+/// start.
 pub(crate) fn lost_inertia(
     assembly: &Assembly<'_>,
     flow: &mut Flow,

@@ -1,4 +1,4 @@
-//! Integrals that are proved to be kept, but that a computed motion has lost.
+//! Integrals that are proved to be conserved but that a computed motion has lost.
 
 use pc_expr::Weighed;
 use pc_mech::{Expr, Neighbourhood};
@@ -9,21 +9,23 @@ use crate::motion::lost::LostIntegral;
 use crate::motion::table::Table;
 use crate::plan::tolerances::Tolerances;
 
-/// The fraction of its scale by which an integral may drift.
+/// The largest drift allowed, as a fraction of the scale of the integral.
 const MOST: f64 = 1e-3;
 
-/// A drift of this many units in the last place of the terms of an integral is rounding, as with a large constant in
-/// the energy, or beside an equilibrium.
+/// A drift of this many units in the last place of the terms of an integral is rounding error, as with a large
+/// constant in the energy or near an equilibrium.
 const ROUNDINGS: f64 = 1e3;
 
-/// A drift is within what was asked for if errors of this many tolerances in each component can cause it.
+/// A drift is within the requested accuracy if it can be caused by errors of this many tolerances in each
+/// component.
 const TOLERANCES: f64 = 100.0;
 
-/// The integrals that would have drifted too far at these states of the motion if they are conserved; the
-/// energy may be one.
+/// The integrals that, if they are conserved, have drifted too far at these states of the motion; the energy
+/// may be one of them.
 ///
-/// Beside its scale, the tolerances of the components are a measure of its drift: with E = e^{2γt} (p² + x²)/2 of a damped
-/// motion, the absolute tolerance of what has long come to rest is multiplied by e^{γt}.
+/// A drift is measured not only against the scale of the integral but also against the tolerances of the components: in E =
+/// e^{2γt} (p² + x²)/2 of a damped motion, the absolute tolerance of a component that has long come to rest is multiplied
+/// by e^{γt}.
 pub(crate) fn suspects(
     table: &Table,
     keeps_energy: bool,
@@ -57,7 +59,7 @@ pub(crate) fn suspects(
     (first..=energy).filter(wanted).filter_map(|j| too_far(flow, j)).collect()
 }
 
-/// The first of these that is proved to be kept, and has drifted by more than rounding.
+/// The first of these integrals that is proved to be conserved and has drifted by more than rounding error.
 pub(crate) fn lost(
     suspects: Vec<LostIntegral>,
     energy: &str,
@@ -73,9 +75,9 @@ pub(crate) fn lost(
         .find(|lost| !lost.drift.is_finite() || lost.drift > rounding(assembly, flow, &lost.name, states))
 }
 
-/// The larger of the largest kinetic energy and the range of the rest, from energies with and without velocities:
-/// constants do not count. Infinite if nothing is known, since constraints that are not affine may allow no state of
-/// rest.
+/// The largest kinetic energy or the range of the remaining energy, whichever is larger, found from energies with
+/// and without velocities, so that constants do not count. Infinite if nothing is known, since constraints that are
+/// not affine may allow no state of rest.
 fn scale_of_energy(flow: &mut Flow, place: usize, states: &[(f64, &[f64])]) -> f64 {
     let (mut kinetic, mut least, mut most) = (0.0f64, f64::INFINITY, f64::NEG_INFINITY);
     for (t, y) in states {
@@ -90,13 +92,14 @@ fn scale_of_energy(flow: &mut Flow, place: usize, states: &[(f64, &[f64])]) -> f
     if least > most { f64::INFINITY } else { kinetic.max(most - least) }
 }
 
-/// The places of the velocities or momenta in the state.
+/// The indices of the velocities or momenta in the state.
 fn moving(flow: &Flow) -> std::ops::Range<usize> {
     let motion = &flow.motion;
     motion.coordinates()..motion.names().len() - motion.states()
 }
 
-/// Σ |I(y) − I(y without one of its components)|: without a velocity, or with a coordinate as at the start.
+/// The sum Σ |I(y) − I(y without one of its components)|, where a velocity is set to zero and a coordinate to
+/// its value at the start.
 fn contributions(flow: &mut Flow, place: usize, t: f64, y: &[f64]) -> f64 {
     let start = flow.start.clone();
     let moving = moving(flow);
@@ -112,7 +115,8 @@ fn contributions(flow: &mut Flow, place: usize, t: f64, y: &[f64]) -> f64 {
     sum
 }
 
-/// Σ |I(y with an error of this many tolerances in one component) − I(y)|
+/// The sum Σ |I(y with an error in one component) − I(y)|, where the error is `TOLERANCES` times that in
+/// `errors`.
 fn effect_of_errors(flow: &mut Flow, place: usize, (t, y): (f64, &[f64]), errors: Vec<f64>) -> f64 {
     let whole = flow.motion.observe(t, y)[place];
     let mut wrong = y.to_vec();
@@ -126,8 +130,9 @@ fn effect_of_errors(flow: &mut Flow, place: usize, (t, y): (f64, &[f64]), errors
     sum
 }
 
-/// The possible effect of rounding on an integral: some units in the last place of its largest term; the terms of
-/// the energy are those of the Lagrangian. Infinite where these cannot be evaluated.
+/// The possible effect of rounding errors on an integral: a number of units in the last place of its largest
+/// term, where the terms of the energy are taken to be those of the Lagrangian. Infinite where the terms cannot
+/// be evaluated.
 fn rounding(assembly: &Assembly<'_>, flow: &mut Flow, name: &str, states: &[(f64, &[f64])]) -> f64 {
     let system = &assembly.system;
     let declared = system.integrals().iter().find(|(known, _)| known == name);
@@ -150,7 +155,7 @@ fn rounding(assembly: &Assembly<'_>, flow: &mut Flow, name: &str, states: &[(f64
     ROUNDINGS * f64::EPSILON * states.iter().map(|(t, y)| size(*t, y)).fold(0.0, f64::max)
 }
 
-/// The names of the integrals of the text that are proved to be kept everywhere.
+/// The names of the integrals of the text that are proved to be conserved everywhere.
 fn proved(assembly: &Assembly<'_>) -> Vec<String> {
     let system = &assembly.system;
     if system.integrals().is_empty() {

@@ -1,4 +1,4 @@
-//! The table of a run as a file.
+//! Writes the table of a run to a file.
 
 use std::io::{self, Write};
 
@@ -39,7 +39,7 @@ impl Rows for Table {
 }
 
 impl Run {
-    /// Writes the table, with parameters, events and summary if the format has room for them.
+    /// Writes the table, with parameters, events and summary if the format can hold them.
     ///
     /// # Errors
     /// [`FileError::Write`], which says where the table was kept; an existing file is then
@@ -74,7 +74,7 @@ impl Run {
         json::write(&before, &self.table, &after, out)
     }
 
-    /// The times of each event, as `events/NAME`.
+    /// The times of each event, as lists called `events/NAME`.
     fn times_of_events(&self) -> Vec<(String, Vec<f64>)> {
         let times = |event: usize| {
             let occurrences = self.occurrences.iter().filter(|occurrence| occurrence.event == event);

@@ -1,4 +1,4 @@
-//! A run for pages and pictures.
+//! Prepares a run for pages and pictures.
 
 use std::ops::Range;
 
@@ -10,8 +10,13 @@ use crate::motion::table::Table;
 use pc_print::short;
 
 impl Run {
+<<<<<<< HEAD:crates/pc-run/src/motion/recording.rs
     /// The run for pages and pictures.
     pub fn record(&self) -> Recording {
+=======
+    /// The run in the form that pages and pictures take.
+    pub fn record(&self) -> Record {
+>>>>>>> eng5:crates/pc-run/src/motion/record.rs
         let at = || short(self.statistics.current_time, 6);
         let remark = match &self.ending {
             Ending::Completed => None,

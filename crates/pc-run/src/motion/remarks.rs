@@ -9,7 +9,7 @@ use pc_print::{energy_remark, short, wrapped};
 use crate::error::RunError;
 use crate::observer::Observer;
 
-/// All that is known of the equations before they are integrated.
+/// Tells the observer everything that is known about the equations before they are integrated.
 pub(crate) fn say(assembly: &Assembly<'_>, observer: &dyn Observer) -> Result<(), RunError> {
     say_moved(assembly, observer);
     say_negative_energy(assembly, observer);
@@ -32,9 +32,8 @@ pub fn say_dropped(assembly: &Assembly<'_>, observer: &dyn Observer) {
     }
 }
 
-/// A remark on equations in the `free` velocities, which were chosen as independent, or on
-/// equations in all velocities, which have nonlinear constraints as integrals; none if there is no
-/// choice.
+/// A remark on equations in the `free` velocities, which were chosen as independent, or on equations in all
+/// velocities, which have nonlinear constraints as integrals; none if neither is the case.
 pub fn choice(assembly: &Assembly<'_>, free: &[Expr<'_>]) -> Option<String> {
     let ConstraintFormulation::Multipliers(_) = assembly.constraints.formulation() else { return None };
     if let Some(held) = assembly.constraints.nonlinear() {
@@ -65,7 +64,7 @@ pub fn choice(assembly: &Assembly<'_>, free: &[Expr<'_>]) -> Option<String> {
     ))
 }
 
-/// Says where the start was moved.
+/// Says how the start was moved onto the constraints.
 pub fn say_moved(assembly: &Assembly<'_>, observer: &dyn Observer) {
     if let Some(written) = &assembly.written_start {
         let names = assembly.system.state();
@@ -86,7 +85,7 @@ pub fn say_moved(assembly: &Assembly<'_>, observer: &dyn Observer) {
     }
 }
 
-/// Says which masses change in time, and how the mass that they lose moves.
+/// Says which masses change with time, and how the mass that they lose moves.
 pub fn say_changing_masses(assembly: &Assembly<'_>, observer: &dyn Observer) {
     if let Some(remark) = changing_masses(assembly) {
         observer.remark(&remark);
@@ -100,7 +99,7 @@ pub fn say_negative_energy(assembly: &Assembly<'_>, observer: &dyn Observer) {
     }
 }
 
-/// Says which reaction forces on bodies are not among the outputs.
+/// Says which reaction forces on bodies are missing from the outputs.
 pub fn say_undetermined(assembly: &Assembly<'_>, observer: &dyn Observer) {
     let left_out = assembly.constraints.undetermined();
     if !left_out.is_empty() {

@@ -1,4 +1,4 @@
-//! A motion as far as it was computed, with a record of the run.
+//! A motion, as far as it was computed, with a record of the run.
 
 use std::time::Duration;
 
@@ -12,7 +12,7 @@ use crate::motion::verification::Verification;
 use crate::plan::Plan;
 use crate::plan::tolerances::Tolerances;
 
-/// A motion as far as it was computed, with a record of the run.
+/// A motion, as far as it was computed, with a record of the run.
 #[derive(Debug)]
 pub struct Run {
     /// The title of the model.
@@ -23,31 +23,31 @@ pub struct Run {
     pub plan: Plan,
     /// Names of the components of the state that was integrated.
     pub state: Vec<String>,
-    /// Their absolute tolerances.
+    /// The absolute tolerances of these components.
     pub tolerances: Tolerances,
-    /// Remarks on components that never exceed theirs.
+    /// Remarks on components that never exceed their absolute tolerances.
     pub never_exceeded: Vec<String>,
     /// The table, as far as the motion was integrated.
     pub table: Table,
     /// The states of the rows; none if these were written as they were computed.
     pub trajectory: Trajectory,
-    /// The motion between its rows too, with the points that pictures need, where that was
-    /// requested.
+    /// The motion between its rows too, with as many points as pictures need, if that was requested.
     pub fine: Option<Table>,
     /// A summary of the global errors, if they were requested.
     pub estimate: Option<Estimate>,
-    /// The constraints that are kept by projection, with the largest residual of each at the output times.
+    /// The constraints that are maintained by projection, with the largest residual of each at the output
+    /// times.
     pub constraints: Vec<(String, f64)>,
     /// The constraints that were dropped, each with the reason.
     pub dropped: Vec<(String, String)>,
-    /// Whether forces jump where the state changes, as dry friction does.
+    /// Whether forces are discontinuous functions of the state, as dry friction is.
     pub jumps: bool,
-    /// Whether the motion keeps its energy: nothing depends on time and the forces do no work.
+    /// Whether the motion conserves its energy: nothing depends on time and the forces do no work.
     pub keeps_energy: bool,
     /// The names of the events that the model has.
     pub events: Vec<String>,
-    /// The numbers of the events whose functions are zero at the start and go on in their direction,
-    /// which is no occurrence.
+    /// The numbers of the events whose functions are zero at the start and then move in the direction of the
+    /// event, which does not count as an occurrence.
     pub passed_at_start: Vec<usize>,
     /// The occurrences of events, in order.
     pub occurrences: Vec<Occurrence>,
@@ -55,11 +55,11 @@ pub struct Run {
     pub slides: Vec<Slide>,
     /// How it ended.
     pub ending: Ending,
-    /// An integral that is proved to be kept, and is not: the motion is wrong.
+    /// An integral that is proved to be conserved but is not: the motion is wrong.
     pub lost: Option<LostIntegral>,
-    /// If the motion failed: the velocity that has lost its inertia, and what is left of it.
+    /// If the motion failed, the velocity that has lost its inertia and the fraction of it that is left.
     pub lost_inertia: Option<(String, f64)>,
-    /// The result of the second derivation, if it was made.
+    /// The result of the comparison with a second derivation, if there was one.
     pub verification: Option<Verification>,
     /// The work done.
     pub statistics: Statistics,
@@ -88,7 +88,7 @@ pub enum Ending {
 }
 
 impl Ending {
-    /// The word for it in output.
+    /// The word for this ending in output.
     pub fn word(&self) -> &'static str {
         match self {
             Ending::Completed => "completed",
@@ -102,7 +102,7 @@ impl Ending {
 }
 
 impl Run {
-    /// The time that it reached.
+    /// The time that the run reached.
     pub fn reached(&self) -> f64 {
         match (&self.ending, self.occurrences.last()) {
             (Ending::Event { .. }, Some(occurrence)) => occurrence.time,
@@ -111,7 +111,7 @@ impl Run {
         }
     }
 
-    /// The error of a run that the observer or a time limit has ended.
+    /// The error for a run that was ended by the observer or by a time limit.
     pub fn stopped(&self) -> Option<RunError> {
         let t = self.statistics.current_time;
         match self.ending {
@@ -121,7 +121,7 @@ impl Run {
         }
     }
 
-    /// An error unless the run was completed and kept what it is proved to keep.
+    /// An error unless the run was completed and conserved every integral that is proved to be conserved.
     ///
     /// # Errors
     /// [`RunError::Lost`], [`RunError::Interrupted`], [`RunError::Ended`],

@@ -14,7 +14,8 @@ use pc_verify::Slope;
 
 use crate::error::RunError;
 
-/// Derivatives with respect to parameters that are integrated with a motion, with the results.
+/// Derivatives of a motion with respect to parameters, which are integrated together with it, and the
+/// results.
 pub(crate) struct Derivatives {
     parameters: Vec<usize>,
     names: Vec<String>,
@@ -24,11 +25,11 @@ pub(crate) struct Derivatives {
 }
 
 impl Derivatives {
-    /// The derivatives of the motion of a model with respect to these parameters, on which its start may
-    /// depend.
+    /// The derivatives of the motion of a model with respect to these parameters, on which the start may
+    /// depend too.
     ///
     /// # Errors
-    /// [`RunError::Model`] where the start has no derivative.
+    /// [`RunError::Model`] if the start has no derivative.
     pub(crate) fn new(
         model: &Model,
         assembly: &Assembly<'_>,
@@ -44,8 +45,8 @@ impl Derivatives {
         Ok(Derivatives { parameters: parameters.to_vec(), names, wanted, matrices: Vec::new() })
     }
 
-    /// Integrates the motion as far as possible; the error says why it ended. `output` sees each
-    /// output and may stop it.
+    /// Integrates the motion as far as possible; the error says why it ended. `output` is called with each
+    /// output and may stop the integration.
     pub(crate) fn follow(
         &mut self,
         flow: &mut Flow,
@@ -63,7 +64,7 @@ impl Derivatives {
         self.take(solved)
     }
 
-    /// The same from a checkpoint, with further checkpoints.
+    /// As [`follow`](Derivatives::follow), from a checkpoint and with further checkpoints.
     pub(crate) fn follow_checkpointed(
         &mut self,
         flow: &Flow,
@@ -81,7 +82,7 @@ impl Derivatives {
         self.take(solved)
     }
 
-    /// Takes the derivatives as far as they were reached.
+    /// Takes over the derivatives, as far as they were integrated.
     fn take(
         &mut self,
         solved: Result<SensitivitySolution, Box<SolveFailure<SensitivitySolution>>>,
@@ -92,8 +93,8 @@ impl Derivatives {
         (Solution { trajectory: trajectory.motion().clone(), occurrences, ending, slides }, error)
     }
 
-    /// The rates (∂f/∂y) ∂y/∂p + ∂f/∂p at the last output, which the integration is made of; none if the field has no derivatives
-    /// of its own.
+    /// The rates (∂f/∂y) ∂y/∂p + ∂f/∂p at the last output, which are what is integrated; empty if the field has no derivatives of
+    /// its own.
     pub(crate) fn slopes(&self, flow: &mut Flow, t: f64, state: &[f64]) -> Vec<Slope> {
         let (motion, dim) = (&mut flow.motion, state.len());
         let mut by_state = vec![f64::NAN; dim * dim];
@@ -122,7 +123,7 @@ impl Derivatives {
         last.chunks(dim).zip(self.parameters.iter().zip(&self.names)).map(slope).collect()
     }
 
-    /// Names of the columns: ∂x/∂p for each x of a motion, then for the next p.
+    /// The names of the columns: ∂x/∂p for each x of a motion, first for one p, then for the next.
     pub(crate) fn columns(&self, flow: &Flow) -> Vec<String> {
         self.names
             .iter()
@@ -130,7 +131,7 @@ impl Derivatives {
             .collect()
     }
 
-    /// The values of these columns at output number `i`, which is y at time t.
+    /// The values of these columns at output number `i`, which is the state y at time t.
     pub(crate) fn row(&self, flow: &Flow, i: usize, t: f64, y: &[f64]) -> Vec<f64> {
         let columns = self.matrices[i].chunks_exact(y.len()).zip(&self.parameters);
         columns.flat_map(|(column, &j)| flow.derivative(t, y, column, j)).collect()

@@ -1,10 +1,11 @@
-//! Some of the states at the ends of steps, however many these are.
+//! A limited number of states at the ends of steps, however many steps there are.
 
-/// The most states kept of the first steps, and of the others.
+/// The largest number of states kept from the first steps, and also from the later ones.
 const MOST: usize = 64;
 
-/// The first states of a motion, then every n-th of the others, with n large enough that they stay few. Rows may
-/// all come at the same phase of an oscillation; steps do not, and are dense where a motion is fast.
+/// The states after the first steps of a motion, then after every n-th step, with n large enough that only a few
+/// are kept. Rows may all fall on the same phase of an oscillation; steps do not, and they are dense where a
+/// motion is fast.
 #[derive(Clone, Debug)]
 pub(crate) struct StepStates {
     first: Vec<(f64, Vec<f64>)>,

@@ -14,7 +14,7 @@ use crate::plan::tolerances::note_largest;
 
 /// A record of the rows that were written.
 pub(crate) struct Streamed<'s, 'p> {
-    /// A second flow to compute rows with, since the integration uses the first.
+    /// A second flow, with which rows are computed, since the integration uses the first.
     flow: Flow,
     stream: &'s mut Stream<'p>,
     observer: &'s dyn Observer,
@@ -50,7 +50,7 @@ impl<'s, 'p> Streamed<'s, 'p> {
         })
     }
 
-    /// Integrates the motion as far as possible, without its states; the error says why it ended.
+    /// Integrates the motion as far as possible, without keeping its states; the error says why it ended.
     pub(crate) fn follow(
         &mut self,
         flow: &mut Flow,
@@ -83,7 +83,7 @@ impl<'s, 'p> Streamed<'s, 'p> {
     }
 }
 
-/// Raises the largest residuals to those at (t, y).
+/// Raises the largest residuals to those at (t, y), where these are larger.
 pub(crate) fn note_residuals(worst: &mut [(String, f64)], flow: &mut Flow, t: f64, y: &[f64]) {
     for ((_, worst), residual) in worst.iter_mut().zip(flow.constraint_residuals(t, y)) {
         *worst = raised(*worst, residual);

@@ -24,7 +24,7 @@ pub fn text(run: &Run) -> String {
     text
 }
 
-/// The labelled lines of the summary, without the computing time, so that the same run has the same
+/// The labelled lines of the summary, without the computing time, so that the same run gives the same
 /// summary.
 pub fn entries(run: &Run) -> Vec<(&'static str, Vec<String>)> {
     let (plan, work) = (&run.plan, &run.statistics);
@@ -76,7 +76,7 @@ pub fn entries(run: &Run) -> Vec<(&'static str, Vec<String>)> {
 
 const WORK: &str = "work";
 
-/// The choices of the method `auto`, or a remark if DOP853 met a stiff motion.
+/// The lines about the choices made by the method `auto`, or a remark if DOP853 met a stiff motion.
 fn chosen(run: &Run) -> Vec<String> {
     let (plan, work) = (&run.plan, &run.statistics);
     let times = |n: u64| if n == 1 { "once".to_owned() } else { format!("{n} times") };
@@ -115,9 +115,9 @@ fn work_done(run: &Run) -> String {
     parts.join(", ")
 }
 
-/// Up to this number, all occurrences of an event are listed.
+/// If an event occurs no more often than this, all its occurrences are listed.
 const FEW: usize = 5;
-/// The remark on an event whose function is zero at the start and goes beyond.
+/// The remark on an event whose function is zero at the start and then passes beyond it.
 const AT_START: &str = "   (zero at the start and beyond it from there on, which is no passage)";
 
 fn events(run: &Run) -> Vec<String> {
@@ -139,7 +139,7 @@ fn events(run: &Run) -> Vec<String> {
     run.events.iter().enumerate().map(line).collect()
 }
 
-/// Where the motion slides along surfaces on which forces jump.
+/// The lines that say where the motion slides along surfaces on which forces jump.
 fn slides(run: &Run) -> Vec<String> {
     let mut surfaces: Vec<&str> = Vec::new();
     for slide in &run.slides {
@@ -185,10 +185,10 @@ fn drifts(run: &Run) -> Vec<String> {
     drifts.collect()
 }
 
-/// Rows that are named one by one.
+/// The largest number of rows that are listed one by one.
 const FEW_ROWS: usize = 3;
 
-/// The estimated global errors of the state at the last row where they are known, with remarks.
+/// The estimated global errors of the state in the last row in which they are known, with remarks.
 fn errors(run: &Run) -> Vec<String> {
     let Some(estimate) = &run.estimate else { return Vec::new() };
     let by = format!("by a companion: {}, rtol {}", estimate.method, short(estimate.rtol, 2));
@@ -227,14 +227,14 @@ fn errors(run: &Run) -> Vec<String> {
     lines
 }
 
-/// The error of a column.
+/// The error of a column in one row.
 struct LastError {
     absolute: f64,
-    /// The same, divided by the largest value of the column.
+    /// The error divided by the largest value of the column.
     relative: Option<f64>,
 }
 
-/// The time of the last row with known errors, and those of the state.
+/// The time of the last row in which errors are known, and the errors of the state there.
 fn last_errors(run: &Run) -> Option<(f64, Vec<(&str, LastError)>)> {
     let (table, estimate) = (&run.table, run.estimate.as_ref()?);
     let row = table.rows().nth(estimate.rows.checked_sub(1)?)?;
@@ -247,7 +247,7 @@ fn last_errors(run: &Run) -> Option<(f64, Vec<(&str, LastError)>)> {
     Some((row[0], state.filter_map(error).collect()))
 }
 
-/// The columns that have no finite value in some rows.
+/// The lines that name columns without a finite value in some rows.
 fn not_finite(run: &Run) -> Vec<String> {
     let table = &run.table;
     let line = |(j, name): (usize, &String)| {

@@ -15,28 +15,28 @@ pub struct Table {
     states: usize,
     conserved: usize,
     derivatives: usize,
-    /// As many as columns between t and the derivatives, or none.
+    /// The number of columns of errors: that of the columns between t and the derivatives, or zero.
     errors: usize,
-    /// One row after the other.
+    /// The values, one row after the other.
     values: Vec<f64>,
-    /// A record of the rows, if they were written as they were computed: `values` then has only the
-    /// last one.
+    /// A record of the rows, if they were written as they were computed: then `values` contains only the last
+    /// one.
     streamed: Option<Streamed>,
 }
 
-/// Values of a column that are not finite.
+/// The values of a column that are not finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NotFinite {
-    /// The first of them.
+    /// The first value that is not finite.
     pub value: f64,
-    /// The time of this value.
+    /// The time of the first of these values.
     pub t: f64,
     /// How many rows have no finite value.
     pub rows: usize,
 }
 
 impl NotFinite {
-    /// Counts another value.
+    /// Counts another value, if it is not finite.
     fn note(known: Option<NotFinite>, t: f64, value: f64) -> Option<NotFinite> {
         match known {
             _ if value.is_finite() => known,
@@ -53,17 +53,17 @@ struct Streamed {
     start: Vec<f64>,
     /// The largest changes since the start.
     worst: Vec<f64>,
-    /// Values that were not finite, column by column.
+    /// The values that were not finite, column by column.
     not_finite: Vec<Option<NotFinite>>,
 }
 
 impl Table {
-    /// The states of a trajectory, in quasi-velocities, with the observables of its motion.
+    /// The table of the states of a trajectory, in quasi-velocities, with the observables of its motion.
     pub fn new(flow: &mut Flow, trajectory: &Trajectory) -> Table {
         Table::with_derivatives(flow, trajectory, None)
     }
 
-    /// The same, followed by derivatives.
+    /// The same table, with further columns of derivatives.
     pub(crate) fn with_derivatives(
         flow: &mut Flow,
         trajectory: &Trajectory,
@@ -81,7 +81,7 @@ impl Table {
         table
     }
 
-    /// The rows of these states.
+    /// A table with the rows of these states.
     pub(crate) fn of_states(flow: &mut Flow, states: &[(f64, Vec<f64>)]) -> Table {
         let mut table = Table::of(flow);
         for (t, y) in states {
@@ -97,7 +97,7 @@ impl Table {
         Table { streamed: Some(streamed), ..Table::of(flow) }
     }
 
-    /// Replaces the last row by that of a state.
+    /// Replaces the last row by the row of a state.
     pub(crate) fn give(&mut self, flow: &mut Flow, t: f64, y: &[f64]) {
         self.values.clear();
         self.values.push(t);
@@ -118,7 +118,7 @@ impl Table {
         }
     }
 
-    /// No rows yet; the columns are those of the flow that will give them.
+    /// A table without rows; its columns are those of the flow that will compute them.
     pub(crate) fn of(flow: &Flow) -> Table {
         Table::empty(flow, Vec::new())
     }
@@ -149,22 +149,22 @@ impl Table {
         self.streamed.as_ref().map_or(self.values.len() / self.columns.len(), |streamed| streamed.rows)
     }
 
-    /// Whether there is no row.
+    /// Whether there are no rows.
     pub fn is_empty(&self) -> bool {
         self.values.is_empty()
     }
 
-    /// The rows in order; only the last one of rows that were written as they were computed.
+    /// The rows in order; if they were written as they were computed, only the last one.
     pub fn rows(&self) -> impl DoubleEndedIterator<Item = &[f64]> + ExactSizeIterator {
         self.values.chunks_exact(self.columns.len())
     }
 
-    /// Column number `j`, from 0.
+    /// The values in column number `j`, counted from 0.
     pub fn column(&self, j: usize) -> impl ExactSizeIterator<Item = f64> + Clone + '_ {
         self.values.chunks_exact(self.columns.len()).map(move |row| row[j])
     }
 
-    /// The values of column number `j` that are not finite, if there are any.
+    /// The values of column number `j` that are not finite, if any.
     pub fn not_finite(&self, j: usize) -> Option<NotFinite> {
         match &self.streamed {
             Some(streamed) => streamed.not_finite.get(j).copied().flatten(),
@@ -195,7 +195,7 @@ impl Table {
         start..start + self.conserved
     }
 
-    /// The numbers of the columns that are outputs of the model, reactions among them.
+    /// The numbers of the columns that are outputs of the model, including reactions.
     pub fn outputs(&self) -> std::ops::Range<usize> {
         self.conserved().end..self.columns.len() - self.derivatives - self.errors
     }
@@ -206,12 +206,12 @@ impl Table {
         start..start + self.derivatives
     }
 
-    /// The numbers of the columns that are errors, in the order of the columns that they belong to.
+    /// The numbers of the columns that are errors, in the order of the columns to which they belong.
     pub fn errors(&self) -> std::ops::Range<usize> {
         self.derivatives().end..self.columns.len()
     }
 
-    /// The number of the column with the errors of column `j`, where they are known.
+    /// The number of the column that contains the errors of column `j`, if there is one.
     pub fn error_of(&self, j: usize) -> Option<usize> {
         let errors = self.errors();
         (1..=errors.len()).contains(&j).then(|| errors.start + j - 1)
@@ -222,7 +222,8 @@ impl Table {
         self.column(j).fold(0.0, |largest, value| value.abs().max(largest))
     }
 
-    /// Appends columns of errors, whose values `errors` computes from the number of a row and the row.
+    /// Appends columns of errors, whose values in each row are computed by `errors` from the number of the
+    /// row and the row itself.
     pub(crate) fn append_errors(
         &mut self,
         names: Vec<String>,
@@ -238,7 +239,7 @@ impl Table {
         self.values = values;
     }
 
-    /// max |I(t) − I(t_start)| over the rows for column `j`.
+    /// The drift of column `j`: max |I(t) − I(t_start)| over the rows.
     pub fn drift(&self, j: usize) -> Drift {
         let (start, absolute) = match &self.streamed {
             Some(streamed) if streamed.rows > 0 => (streamed.start[j], streamed.worst[j]),
@@ -252,19 +253,19 @@ impl Table {
     }
 }
 
-/// The larger of the worst change so far and another one (f64::max would lose a NaN).
+/// The largest change so far or another one, whichever is larger (f64::max would lose a NaN).
 pub(crate) fn raised(worst: f64, change: f64) -> f64 {
     let change = change.abs();
     if change > worst || change.is_nan() { change } else { worst }
 }
 
-/// How far a quantity went from its start value.
+/// How far a quantity moved away from its start value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drift {
     /// I(t_start)
     pub start: f64,
     /// max |I(t) − I(t_start)|
     pub absolute: f64,
-    /// The same, divided by |I(t_start)| where that is larger.
+    /// The same, divided by |I(t_start)|; none unless this is larger.
     pub relative: Option<f64>,
 }

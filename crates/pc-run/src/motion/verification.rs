@@ -1,4 +1,4 @@
-//! The result of the second derivation.
+//! Comparisons with a second derivation.
 
 use pc_mech::Equations;
 use pc_model::{Assembly, Flow, Model, Variables};
@@ -9,10 +9,11 @@ use pc_verify::{Agreement, Jump, Options, Outlet, Second, Slope, VerifyError, ve
 use crate::error::RunError;
 use crate::observer::Observer;
 
-/// The properties of a model, compared with a second derivation.
+/// Finds the properties of a model and compares them with a second derivation.
 ///
 /// # Errors
-/// [`RunError::Verify`] if that disagrees; [`RunError::Model`] if something of the model cannot be derived.
+/// [`RunError::Verify`] if the second derivation disagrees; [`RunError::Model`] if something about the model
+/// cannot be derived.
 pub fn checked<'g>(
     model: &Model,
     assembly: &Assembly<'g>,
@@ -27,8 +28,8 @@ pub fn checked<'g>(
     Ok(check.compared(second))
 }
 
-/// Compares equations with a second derivation before they are returned in some form, and says where this is
-/// not possible.
+/// Compares equations with a second derivation before they are returned in some form, and tells the observer
+/// if this is not possible.
 ///
 /// # Errors
 /// [`RunError::Verify`] if the derivations disagree: nothing is returned then.
@@ -45,7 +46,7 @@ pub fn vouched(
     Ok(())
 }
 
-/// As [`vouched`]; returns the reason if equations could not be compared.
+/// As [`vouched`], but returns the reason if the equations could not be compared.
 ///
 /// # Errors
 /// [`RunError::Verify`] if the derivations disagree.
@@ -66,7 +67,7 @@ pub fn compared(
 pub struct Verification {
     second: Result<Second, VerifyError>,
     form: &'static str,
-    /// Where it was compared, with the results.
+    /// The places at which the motion was compared, with the results.
     outcomes: Vec<(&'static str, Result<Agreement, VerifyError>)>,
     /// The comparison of derivatives with differences.
     derivatives: Vec<Result<Agreement, VerifyError>>,
@@ -75,7 +76,7 @@ pub struct Verification {
 }
 
 impl Verification {
-    /// The second derivation of a model in a form, not compared anywhere yet.
+    /// The second derivation of a model in a form, before any comparison.
     pub fn new(model: &Model, assembly: &Assembly<'_>, form: Variables) -> Verification {
         Verification {
             second: Second::new(model, assembly),
@@ -86,16 +87,16 @@ impl Verification {
         }
     }
 
-    /// Whether one comparison takes too long, that is, more than some milliseconds.
+    /// Whether one comparison takes too long, that is, more than a few milliseconds.
     pub fn is_long(&self, flow: &Flow) -> bool {
         self.second.as_ref().is_ok_and(|second| second.is_long(flow))
     }
 
-    /// Compares at one state.
+    /// Compares the equations at one state.
     ///
     /// # Errors
-    /// [`RunError::Verify`] if the derivations disagree. It is not an error if the second derivation cannot
-    /// be made, or a state is singular.
+    /// [`RunError::Verify`] if the derivations disagree. It is not an error if there can be no second
+    /// derivation, or if the state is singular.
     pub fn compare(
         &mut self,
         flow: &Flow,
@@ -113,7 +114,7 @@ impl Verification {
         Ok(())
     }
 
-    /// Compares derivatives of rates at one state with differences of the second derivation's.
+    /// Compares derivatives of rates at one state with differences of the rates from the second derivation.
     ///
     /// # Errors
     /// [`RunError::Verify`] if they disagree.
@@ -173,7 +174,7 @@ impl Verification {
         Ok(())
     }
 
-    /// The comparison of states after events, in words.
+    /// A description of the comparison of states after events.
     fn of_resets(&self) -> Vec<String> {
         let is_known = self.resets.iter().any(|(_, outcome)| outcome.is_ok());
         let unknown =
@@ -186,7 +187,7 @@ impl Verification {
             .collect()
     }
 
-    /// The comparison of derivatives, in words.
+    /// A description of the comparison of derivatives.
     fn of_derivatives(&self) -> Option<String> {
         let known: Vec<&Agreement> =
             self.derivatives.iter().filter_map(|outcome| outcome.as_ref().ok()).collect();
@@ -200,7 +201,7 @@ impl Verification {
         }
     }
 
-    /// The comparison, in words.
+    /// A description of the comparison.
     pub fn lines(&self) -> Vec<String> {
         if let Err(error) = &self.second {
             return vec![error.to_string()];

@@ -1,4 +1,4 @@
-//! The memory of the rows of a motion, known before it is integrated.
+//! The memory needed for the rows of a motion, which is known before the motion is integrated.
 
 use pc_expr::Limits;
 use pc_mech::VectorField;
@@ -7,11 +7,11 @@ use pc_model::Flow;
 use crate::error::RunError;
 use crate::plan::Plan;
 
-/// The number of copies of the states while a checkpoint is written: those of the last checkpoint,
-/// the current ones, and the bytes.
+/// The number of copies of the states in memory while a checkpoint is written: those of the last checkpoint,
+/// the current ones, and the bytes to be written.
 const CHECKPOINTED: u64 = 3;
 
-/// Numbers in memory for each row until the table is written.
+/// The number of numbers held in memory for each row until the table is written.
 pub(crate) fn numbers(flow: &Flow, plan: &Plan, checkpointed: bool, estimated: bool) -> u64 {
     let dim = flow.motion.dim() as u64;
     let columns = 1 + flow.columns().len() as u64;
@@ -28,7 +28,7 @@ pub(crate) fn numbers(flow: &Flow, plan: &Plan, checkpointed: bool, estimated: b
     1 + copies * (1 + dim) + columns + derivatives + errors
 }
 
-/// An error unless `rows` rows of `numbers` numbers each are within the memory limit.
+/// An error unless `rows` rows of `numbers` numbers each fit within the memory limit.
 ///
 /// # Errors
 /// [`RunError::Rows`]
@@ -40,10 +40,10 @@ pub(crate) fn allow(rows: u64, numbers: u64, limits: &Limits) -> Result<(), RunE
     Ok(())
 }
 
-/// Rows that take more bytes are written as they are computed, where that is possible.
+/// Rows that take more bytes than this are written as they are computed, if possible.
 const MUCH: u64 = 64 << 20;
 
-/// Whether rows should be written as they are computed.
+/// Whether rows take so much memory that they should be written as they are computed.
 pub(crate) fn is_much(rows: u64, numbers: u64, limits: &Limits) -> bool {
     rows.saturating_mul(numbers).saturating_mul(size_of::<f64>() as u64) > MUCH.min(limits.memory)
 }

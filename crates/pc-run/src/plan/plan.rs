@@ -1,4 +1,5 @@
-//! The plan of a run: from the options, else the text of the model, else the defaults.
+//! The plan of a run, taken from the options, otherwise from the text of the model, otherwise from the
+//! defaults.
 
 use pc_model::document::AbsoluteTolerance;
 use pc_model::{Flow, Model, UnknownParameter, Variables};
@@ -8,12 +9,12 @@ use crate::error::RunError;
 use crate::plan::Wishes;
 use crate::plan::tolerances::Tolerances;
 
-/// The factor for much smaller tolerances.
+/// The factor that makes tolerances much smaller.
 const FINER: f64 = 1e-2;
-/// The rounding of a few operations is no smaller.
+/// No relative tolerance is made smaller than this: the rounding error of a few operations.
 const LEAST: f64 = 1e-14;
 
-/// Time span, rows, method, tolerances and limit of the steps of a run.
+/// The time span, rows, method and tolerances of a run, and the limits on its steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Form of the equations.
@@ -24,19 +25,19 @@ pub struct Plan {
     pub t_end: f64,
     /// Number of rows, at least 2.
     pub samples: usize,
-    /// The times of the rows, where they are given.
+    /// The times of the rows, if they are given.
     pub at: Option<Vec<f64>>,
     /// Relative tolerance.
     pub rtol: f64,
-    /// Absolute tolerances, as far as they are given.
+    /// The absolute tolerances, as far as they are given.
     pub atol: AbsoluteTolerance,
-    /// Largest length of a step, if it is limited.
+    /// The largest length of a step, if it is limited.
     pub max_step: Option<f64>,
-    /// The most steps from one row to the next, if given.
+    /// The largest number of steps from one row to the next, if given.
     pub max_steps: Option<u64>,
     /// The number of parts of each step that are searched for events, if given.
     pub samples_per_step: Option<u32>,
-    /// The fraction of the first interval at which events count as accumulated, if given.
+    /// The fraction of the first interval between events at which they count as accumulated, if given.
     pub accumulation: Option<f64>,
     /// Method.
     pub method: Method,
@@ -47,7 +48,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// The plan of a run of a model.
+    /// The plan for a run of a model.
     ///
     /// # Errors
     /// [`RunError::NoEnd`], [`RunError::EndIsStart`], [`RunError::Sensitivities`],
@@ -85,13 +86,13 @@ impl Plan {
         })
     }
 
-    /// The form of the equations, known before there is a plan.
+    /// The form of the equations, which is known before there is a plan.
     pub fn form(model: &Model, wishes: &Wishes) -> Variables {
         let written = model.document().simulation.form.as_ref().map(|form| form.value);
         wishes.form.or(written).unwrap_or(Variables::QuasiVelocities)
     }
 
-    /// The times of the rows: those given, else evenly spaced, start and end included.
+    /// The times of the rows: the given ones, otherwise evenly spaced ones, including start and end.
     pub fn times(&self) -> Vec<f64> {
         if let Some(times) = &self.at {
             return times.clone();
@@ -107,7 +108,7 @@ impl Plan {
         Tolerances::new(&self.atol, flow, (self.t_start, self.t_end), self.rtol)
     }
 
-    /// Method, tolerances, and the limits of steps and time for the integrator.
+    /// The method, the tolerances, and the limits on steps and time, as options of the integrator.
     pub fn options(&self, tolerances: &Tolerances) -> Options {
         let mut options = Options::new(self.method)
             .relative_tolerance(self.rtol)
@@ -128,21 +129,21 @@ impl Plan {
         }
     }
 
-    /// The same at tolerances of a hundredth of those of a run: what this changes is the error of
-    /// integration.
+    /// The same plan with tolerances a hundred times smaller than those of a run: the change that this makes
+    /// is the error of integration.
     pub fn finer(&self, tolerances: &Tolerances) -> Plan {
         let rtol = (self.rtol * FINER).max(LEAST);
         Plan { rtol, atol: tolerances.times(FINER), ..self.clone() }
     }
 
-    /// Method, tolerances and the limit of steps in words.
+    /// A description of the method, the tolerances and the limit on the length of steps.
     pub fn in_words(&self, tolerances: &Tolerances) -> String {
         let limit = self.max_step.map_or_else(String::new, |length| format!(", steps to {length:e}"));
         format!("{}, rtol {:e}, atol {}{limit}", self.method, self.rtol, tolerances.in_words())
     }
 }
 
-/// The parameters of these names, by their numbers.
+/// The numbers of the parameters with these names.
 fn parameters(model: &Model, names: &[String]) -> Result<Vec<usize>, RunError> {
     let known: Vec<String> = model.parameters().map(|(name, _)| name.to_owned()).collect();
     let place = |name: &String| {

@@ -7,8 +7,8 @@ use serde_json::{Map, Value, json};
 
 use pc_print::small;
 
-/// A component that starts at zero in the text and stays below this fraction of the largest component is the
-/// rounding of others.
+/// A component that starts at zero in the text and stays below this fraction of the largest component is
+/// rounding error of the others.
 const ROUNDING: f64 = 1e-14;
 
 /// The absolute tolerance of each component of the state.
@@ -19,13 +19,14 @@ pub struct Tolerances {
 }
 
 impl Tolerances {
-    /// Those given, else by the scale of the components at the start of the flow.
+    /// The given tolerances, otherwise tolerances that depend on the scale of the components at the start of
+    /// the flow.
     pub(crate) fn new(given: &AbsoluteTolerance, flow: &mut Flow, span: (f64, f64), rtol: f64) -> Tolerances {
         let values = flow.absolute_tolerances(given, span, rtol);
         Tolerances { names: flow.motion.names().to_vec(), values }
     }
 
-    /// The tolerances as the integrator takes them.
+    /// The tolerances in the form that the integrator takes.
     pub(crate) fn tolerance(&self) -> Tolerance {
         Tolerance::each(self.values.clone())
     }
@@ -46,13 +47,14 @@ impl Tolerances {
         AbsoluteTolerance { all: None, each: each.collect() }
     }
 
-    /// The most common one, then the others with their names.
+    /// A text with the most common tolerance, then the others with the names of their components.
     pub(crate) fn in_words(&self) -> String {
         let others = self.others().map(|(name, value)| format!(", {} for {name}", rounded(value)));
         format!("{}{}", rounded(self.commonest()), others.collect::<String>())
     }
 
-    /// A number where all are the same, else each by its name.
+    /// A number if all tolerances are the same, otherwise an object with the tolerance of each component
+    /// under its name.
     pub(crate) fn json(&self) -> Value {
         if self.others().next().is_none() {
             return json!(self.commonest());
@@ -61,8 +63,8 @@ impl Tolerances {
         Value::Object(each.collect::<Map<_, _>>())
     }
 
-    /// A line for each component that never exceeds its tolerance, from the start of the text and the largest magnitude of each:
-    /// none of its digits is known to be right.
+    /// A line for each component that never exceeds its tolerance, so that none of its digits is known to be right. `start`
+    /// contains the start values of the text, and `largest` the largest magnitude of each component.
     pub(crate) fn never_exceeded(&self, start: &[(String, f64)], largest: &[f64]) -> Vec<String> {
         let rounding = ROUNDING * largest.iter().fold(0.0, |most, value| value.max(most));
         let starts = |name: &String| start.iter().any(|(known, value)| known == name && *value != 0.0);
@@ -95,13 +97,13 @@ impl Tolerances {
     }
 }
 
-/// Three digits, without zeros at their end.
+/// The value with three digits, without trailing zeros.
 fn rounded(value: f64) -> String {
     let three: f64 = format!("{value:.2e}").parse().unwrap_or(value); // it is a number
     format!("{three:e}")
 }
 
-/// Raises the largest magnitudes to those of a state.
+/// Raises the largest magnitudes to those in a state, where these are larger.
 pub(crate) fn note_largest(largest: &mut Vec<f64>, state: &[f64]) {
     largest.resize(state.len(), 0.0);
     largest.iter_mut().zip(state).for_each(|(largest, value)| *largest = largest.max(value.abs()));

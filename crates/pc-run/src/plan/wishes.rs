@@ -1,4 +1,4 @@
-//! The options of a run; the text of the model and the defaults supply the rest.
+//! The options of a run; everything else is supplied by the text of the model and the defaults.
 
 use pc_model::Variables;
 use pc_model::document::AbsoluteTolerance;
@@ -11,21 +11,21 @@ pub struct Wishes {
     pub form: Option<Variables>,
     /// End time.
     pub t_end: Option<f64>,
-    /// Number of rows, at least 2.
+    /// The number of rows, at least 2.
     pub samples: Option<usize>,
-    /// The times of the rows instead, in order; their last is the end time.
+    /// The times of the rows, given instead of their number, in order; the last is the end time.
     pub times: Option<Vec<f64>>,
     /// Relative tolerance.
     pub rtol: Option<f64>,
-    /// Absolute tolerances, as far as they are given.
+    /// The absolute tolerances, as far as they are given.
     pub atol: AbsoluteTolerance,
-    /// Largest length of a step.
+    /// The largest length of a step.
     pub max_step: Option<f64>,
-    /// The most steps from one row to the next.
+    /// The largest number of steps from one row to the next.
     pub max_steps: Option<u64>,
     /// The number of parts of each step that are searched for events.
     pub samples_per_step: Option<u32>,
-    /// The fraction of the first interval at which events count as accumulated.
+    /// The fraction of the first interval between events at which they count as accumulated.
     pub accumulation: Option<f64>,
     /// Method.
     pub method: Option<Method>,

@@ -1,4 +1,4 @@
-//! The properties of each member, as `pc check` finds them.
+//! Finds the properties of each member, as `pc check` does.
 
 use std::ops::Range;
 
@@ -58,7 +58,7 @@ impl Work for Checks {
         &self.members
     }
 
-    /// Each is compared when it is checked.
+    /// Does nothing here: each member is compared when it is checked.
     fn vouched(&self) -> Result<(), RunError> {
         Ok(())
     }

@@ -6,20 +6,20 @@ use super::error::SweepError;
 use super::law::{Law, Random};
 use super::values::Vary;
 
-/// What is varied, and how: a grid, or randomly drawn members.
+/// What is varied, and how: in a grid, or by drawing members at random.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Variation {
-    /// The quantities of a grid, all of whose combinations are members.
+    /// The quantities of a grid; each combination of their values is a member.
     pub vary: Vec<Vary>,
-    /// The quantities that are drawn.
+    /// The quantities that are drawn at random.
     pub random: Vec<Random>,
-    /// The number of members that are drawn; none for a grid.
+    /// The number of members to draw; none for a grid.
     pub samples: Option<u64>,
     /// The seed of the random draws.
     pub seed: u64,
 }
 
-/// The members, numbered from 0, with their values.
+/// The members of a sweep, numbered from 0, with their values.
 #[derive(Clone, Debug)]
 pub struct Design {
     targets: Vec<Target>,
@@ -36,16 +36,16 @@ enum Target {
 
 #[derive(Clone, Debug)]
 enum Values {
-    /// All combinations, the last one changing fastest.
+    /// All combinations of values; the last quantity changes fastest.
     Grid(Vec<Vary>),
-    /// Independent draws from the stream of the member, in order.
+    /// Independent draws for each member, in order, from a random stream of its own.
     Random { laws: Vec<Law>, seed: u64 },
     /// The values of each member, one member after the other.
     Listed(Vec<f64>),
 }
 
 impl Design {
-    /// The members of a variation of a model; names that are `set` are not varied.
+    /// The members of a variation of a model; the names in `set` must not be varied.
     ///
     /// # Errors
     /// [`SweepError`] if a name is not in the model, is given twice or is also set, or there are
@@ -71,7 +71,8 @@ impl Design {
         Ok(Design { targets: targets(model, &names)?, values, members })
     }
 
-    /// Members with these values of the named quantities, those of each member one after the other.
+    /// Members with these values of the named quantities; `values` contains those of one member after the
+    /// other.
     ///
     /// # Errors
     /// [`SweepError::UnknownValue`] if a name is not in the model.
@@ -80,7 +81,7 @@ impl Design {
         Ok(Design { targets: targets(model, names)?, values: Values::Listed(values), members })
     }
 
-    /// Number of members.
+    /// The number of members.
     pub fn members(&self) -> u64 {
         self.members
     }
@@ -119,7 +120,7 @@ impl Design {
         }
     }
 
-    /// The model with these values.
+    /// The model with these values of the varied quantities.
     pub(crate) fn model(&self, model: &Model, values: &[f64]) -> Model {
         let mut model = model.clone();
         for (target, &value) in self.targets.iter().zip(values) {

@@ -1,4 +1,4 @@
-//! Errors of a sweep.
+//! Errors in a sweep.
 
 use std::io;
 use std::path::PathBuf;
@@ -11,14 +11,14 @@ use crate::sweep::picture_error::SweepPlotError;
 use crate::sweep::shard::Shard;
 use crate::sweep::sweep_columns::Misshapen;
 
-/// Why a sweep was not begun or not completed.
+/// Why a sweep was not begun or was not completed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SweepError {
     /// A name that is not in the model.
     #[error(transparent)]
     UnknownValue(UnknownValue),
-    /// One name has values from two options.
+    /// One name is given values by two options.
     #[error("`{name}` is given values twice; leave one out")]
     Twice {
         /// The name.
@@ -27,19 +27,19 @@ pub enum SweepError {
     /// The grid has more members than can be counted.
     #[error("the grid has more than 2^64 members; give fewer values")]
     TooMany,
-    /// Another process is at work on the same file.
+    /// Another process is working on the same file.
     #[error("another sweep is writing {}; wait for it, or give another -o", journal.display())]
     InUse {
         /// The journal.
         journal: PathBuf,
     },
-    /// The file in the place of the journal is not one.
+    /// The file in the place of the journal is not a journal.
     #[error("{} was not left by a sweep of this version; remove it, or give another -o", journal.display())]
     Foreign {
         /// The file.
         journal: PathBuf,
     },
-    /// The journal is that of another sweep.
+    /// The journal belongs to another sweep.
     #[error(
         "{} was left by a sweep with {what}; repeat that command to continue, or remove the file to start afresh",
         journal.display()
@@ -47,7 +47,7 @@ pub enum SweepError {
     OtherSweep {
         /// The journal.
         journal: PathBuf,
-        /// What is different, then and now.
+        /// What is different now, with the value then and now.
         what: String,
     },
     /// The journal cannot be read or written.
@@ -58,7 +58,7 @@ pub enum SweepError {
         /// Why.
         source: io::Error,
     },
-    /// A finished member cannot be kept.
+    /// The record of a finished member cannot be written.
     #[error(
         "cannot write {}; the {done} members finished before are kept there, and the same command continues after them",
         journal.display()
@@ -66,7 +66,7 @@ pub enum SweepError {
     Append {
         /// The journal.
         journal: PathBuf,
-        /// How many are kept.
+        /// How many members are kept.
         done: u64,
         /// Why.
         source: io::Error,
@@ -77,20 +77,20 @@ pub enum SweepError {
         /// The file.
         path: PathBuf,
     },
-    /// There is no shard to be merged.
+    /// There are no shards to merge.
     #[error("there are no shards to put together: give the files that `pc sweep --shard` has written")]
     NoShards,
-    /// Two shards are of different sweeps.
+    /// Two shards belong to different sweeps.
     #[error("{} and {} are not of the same sweep: the first has {what}", path.display(), other.display())]
     OtherShard {
         /// The path of one of them.
         path: PathBuf,
         /// The other.
         other: PathBuf,
-        /// What is different.
+        /// A phrase that says what is different.
         what: String,
     },
-    /// A shard is given twice.
+    /// The same shard is given twice.
     #[error("the shard {shard} is there twice: {} and {}", paths[0].display(), paths[1].display())]
     ShardTwice {
         /// Which.
@@ -138,7 +138,7 @@ pub enum SweepError {
     NoneCompleted {
         /// How many there are.
         members: u64,
-        /// The error of the first.
+        /// The error of the first member.
         first: String,
     },
     /// The time limit ended the sweep.

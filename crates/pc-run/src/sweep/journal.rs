@@ -5,8 +5,8 @@
 //! frame of the header: the model and the options, [[what, value], …] in JSON
 //! frame of a record, for members 0, 1, 2, …
 //! ```
-//! A frame is length, CRC-32 and bytes. Records are only appended, each with one call of the
-//! system; an incomplete record at the end is cut off.
+//! A frame consists of a length, a CRC-32 and the bytes. Records are only ever appended, each with one system
+//! call; an incomplete record at the end is cut off.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
@@ -25,14 +25,14 @@ const MAGIC: &[u8] = b"pc sweep journal\n";
 pub struct Journal {
     path: PathBuf,
     file: File,
-    /// Where the records begin.
+    /// The offset at which the records begin.
     records: u64,
-    /// The members that they belong to.
+    /// The members to which the records belong.
     shard: Shard,
     tally: Tally,
 }
 
-/// Finished members in order.
+/// The records of finished members, in order.
 pub trait Records {
     /// The records.
     ///
@@ -40,29 +40,29 @@ pub trait Records {
     /// [`io::Error`] from the file.
     fn records(&self) -> io::Result<Box<dyn Iterator<Item = io::Result<Record>> + '_>>;
 
-    /// The file that keeps them if the table cannot be written; none if they stay in their shards
+    /// The file that keeps the records if the table cannot be written; none if they stay in their shards
     /// anyway.
     fn kept(&self) -> Option<&Path>;
 }
 
-/// The numbers of members by how they ended.
+/// How many members ended in each way.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
-    /// Members that are finished.
+    /// The number of members that are finished.
     pub done: u64,
-    /// The completed ones among them.
+    /// The number of these that were completed.
     pub completed: u64,
-    /// Members that a terminal event has ended.
+    /// The number of members that were ended by a terminal event.
     pub by_event: u64,
-    /// The first few others, with their messages.
+    /// The first few of the other members, with their messages.
     pub others: Vec<(u64, Status, String)>,
 }
 
-/// The most messages that are kept.
+/// The largest number of messages that are kept.
 const MESSAGES: usize = 5;
 
 impl Tally {
-    /// The sum of several journals.
+    /// The sum of the tallies of several journals.
     pub(crate) fn sum<'t>(parts: impl Iterator<Item = &'t Tally>) -> Tally {
         let mut sum = Tally::default();
         for part in parts {
@@ -97,7 +97,7 @@ impl Journal {
         PathBuf::from(name)
     }
 
-    /// The journal of a shard: a new one, or the one that the same sweep has left.
+    /// The journal of a shard: a new one, or the one that the same sweep left behind.
     ///
     /// # Errors
     /// [`SweepError`] if it belongs to another sweep or is in use.
@@ -124,7 +124,8 @@ impl Journal {
         Ok(Journal { tally, ..journal })
     }
 
-    /// A journal that is only read, with its header, from which `shard` reads which shard it is.
+    /// Opens a journal for reading only and returns it with its header, from which `shard` finds out which
+    /// shard it is.
     ///
     /// # Errors
     /// [`SweepError`] if the file is not a journal, or is in use.
@@ -159,7 +160,7 @@ impl Journal {
         }
     }
 
-    /// Writes the `beginning`, unless the file has it.
+    /// Writes the `beginning`, unless the file already has it.
     fn begin(&mut self, beginning: &[u8], header: &Identity) -> Result<(), SweepError> {
         let refused = |source| SweepError::Journal { journal: self.path.clone(), source };
         let mut found = Vec::new();
@@ -182,7 +183,7 @@ impl Journal {
         })
     }
 
-    /// The numbers of records by how they ended, and where the records end.
+    /// How many of the recorded members ended in each way, and the offset at which the records end.
     fn scan(&self) -> io::Result<(Tally, u64)> {
         let (mut tally, mut end) = (Tally::default(), self.records);
         let mut reader = self.reader(self.records)?;
@@ -196,7 +197,7 @@ impl Journal {
         Ok((tally, end))
     }
 
-    /// Appends the member that comes next.
+    /// Appends the record of the next member.
     ///
     /// # Errors
     /// [`SweepError::Append`]
@@ -208,7 +209,7 @@ impl Journal {
         Ok(())
     }
 
-    /// The shard whose members it has.
+    /// The shard whose members the journal contains.
     pub(crate) fn shard(&self) -> Shard {
         self.shard
     }
@@ -218,7 +219,7 @@ impl Journal {
         &self.path
     }
 
-    /// The numbers of members by how they ended.
+    /// How many members ended in each way.
     pub fn tally(&self) -> &Tally {
         &self.tally
     }
@@ -263,7 +264,7 @@ impl Records for Journal {
     }
 }
 
-/// Length of a frame without its bytes.
+/// The length of a frame without its bytes.
 const FRAME: u64 = 12;
 
 fn frame(bytes: &[u8]) -> Vec<u8> {

@@ -8,7 +8,7 @@ use rand_distr::{Distribution, LogNormal, Normal, Uniform};
 /// A quantity with the distribution of its values, [written](super::written) `NAME=DISTRIBUTION`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Random {
-    /// The parameter, or what has a start value.
+    /// The name of a parameter, or of something that has a start value.
     pub name: String,
     /// The distribution.
     pub law: Law,
@@ -17,18 +17,18 @@ pub struct Random {
 /// A distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Law {
-    /// Mean and standard deviation.
+    /// The mean and the standard deviation.
     Normal(f64, f64),
-    /// Least and largest value.
+    /// The smallest and the largest value.
     Uniform(f64, f64),
-    /// Mean and standard deviation of the logarithm.
+    /// The mean and the standard deviation of the logarithm.
     LogNormal(f64, f64),
 }
 
-/// Why numbers do not give a distribution.
+/// Why a name and numbers do not give a distribution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LawError {
-    /// There is no distribution of this name.
+    /// There is no distribution with this name.
     #[error("`{name}` is not a distribution; there are {}", Law::NAMES.join(", "))]
     Unknown {
         /// As written.
@@ -37,7 +37,7 @@ pub enum LawError {
     /// A deviation below 0.
     #[error("the standard deviation must not be negative")]
     Deviation,
-    /// Bounds in the wrong order, or too far apart.
+    /// The bounds are in the wrong order, or too far apart.
     #[error("the first bound must be the lower one")]
     Bounds,
 }
@@ -46,7 +46,7 @@ impl Law {
     /// The names of distributions.
     pub const NAMES: [&'static str; 3] = ["normal", "lognormal", "uniform"];
 
-    /// The distribution `name(a, b)` of finite numbers.
+    /// The distribution `name(a, b)`, where a and b are finite numbers.
     ///
     /// # Errors
     /// [`LawError`]
@@ -61,7 +61,7 @@ impl Law {
         }
     }
 
-    /// The values of a member, in the order of the distributions, from its own stream.
+    /// The values of a member, in the order of the distributions, drawn from its own random stream.
     pub fn draw(laws: &[Law], seed: u64, member: u64) -> Vec<f64> {
         let mut stream = member_stream(seed, member);
         let draw = |law: &Law| match *law {

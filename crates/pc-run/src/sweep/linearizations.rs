@@ -1,4 +1,4 @@
-//! The eigenvalues of each member.
+//! Finds the eigenvalues of each member.
 
 use std::ops::Range;
 
@@ -26,13 +26,13 @@ use crate::table::rows::{CellKind, Column};
 pub(crate) struct Linearizations {
     members: Members,
     varied: Varied,
-    /// The most eigenvalues of a member.
+    /// The largest number of eigenvalues that a member may have.
     most: usize,
 }
 
 impl Linearizations {
     /// # Errors
-    /// [`RunError`] if the unchanged model cannot be linearized at any state.
+    /// [`RunError`] if the equations of the unchanged model cannot be linearized.
     pub(crate) fn new(
         model: Model,
         design: Design,
@@ -53,7 +53,7 @@ impl Linearizations {
         Ok(Linearizations { members: Members::new(model, design, columns), varied, most })
     }
 
-    /// What the numbers depend on besides the model.
+    /// Everything, apart from the model, on which the numbers depend.
     pub(crate) fn depends_on(state: &StateChoice) -> [(&'static str, String); 3] {
         [
             ("--at", state.at.word().to_owned()),
@@ -91,14 +91,14 @@ impl Linearizations {
     }
 }
 
-/// Real and imaginary parts, filled up if there are fewer.
+/// The real and imaginary parts, padded if there are fewer than `most`.
 fn parts(eigenvalues: &[Eigenvalue], most: usize) -> Vec<f64> {
     let mut parts: Vec<f64> = eigenvalues.iter().flat_map(|value| [value.real, value.imaginary]).collect();
     parts.resize(2 * most, f64::NAN);
     parts
 }
 
-/// The verdict of the first approximation.
+/// The word for the verdict of the first approximation.
 fn stability(linear: &Linearization) -> String {
     if linear.is_steady { linear.spectrum.verdict().to_string() } else { "not steady".to_owned() }
 }

@@ -1,4 +1,4 @@
-//! The models of a sweep, with what is known of each member before it begins.
+//! The models of a sweep, with what is known about each member before it begins.
 
 use pc_model::Model;
 
@@ -21,12 +21,12 @@ impl Members {
         Members { model, design, columns }
     }
 
-    /// The contents of a row besides number, values and status of the member.
+    /// The contents of a row, apart from the number, values and status of the member.
     pub(crate) fn columns(&self) -> &[Column] {
         &self.columns
     }
 
-    /// The record of a member that could not start and of which only the values are known: one empty row.
+    /// The record of a member that could not start and about which only the values are known: one empty row.
     pub(crate) fn blank(&self, member: u64) -> Record {
         let words = self.columns.iter().filter(|column| column.kind == CellKind::Text).count();
         Record {
@@ -48,7 +48,7 @@ impl Members {
         model
     }
 
-    /// The models of the first member, of one in the middle and of the last.
+    /// The models of the first member, a member in the middle and the last member.
     pub(crate) fn samples(&self) -> Vec<Model> {
         let Some(last) = self.design.members().checked_sub(1) else { return Vec::new() };
         let mut members = vec![0, last / 2, last];
@@ -72,7 +72,7 @@ impl Members {
     }
 }
 
-/// The error, without its place in the file.
+/// The message of an error, without its place in the file.
 pub(crate) fn message(error: &RunError) -> String {
     match error {
         RunError::Model(error) => error.diagnostic().message.clone(),

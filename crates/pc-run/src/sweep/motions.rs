@@ -1,4 +1,4 @@
-//! The motion of each member.
+//! Integrates the motion of each member.
 
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
@@ -30,25 +30,27 @@ pub(crate) struct Motions {
     members: Members,
     plan: Plan,
     times: Vec<f64>,
-    /// The tolerances, by the scale of the model itself, so that members in one vector share them.
+    /// The tolerances, which depend on the scale of the model itself, so that all members in one vector share
+    /// them.
     tolerances: Tolerances,
     options: Options,
-    /// Whether all rows are recorded, instead of the last one with the drifts.
+    /// Whether all rows are recorded, instead of only the last one with the drifts.
     all_rows: bool,
-    /// The number of these rows.
+    /// The number of rows that are recorded.
     rows: usize,
     prototype: Option<Arc<Prototype>>,
-    /// How many were completed beside others.
+    /// How many members were completed side by side with others.
     beside: AtomicU64,
 }
 
-/// A member before its motion: its equations with what is known of it, or its record; none if the time limit
-/// had passed.
+/// A member before its motion: its equations and what is known about it; or else its record, which is none if
+/// the time limit had passed.
 type Begun = Result<Box<(Flow, Record)>, Option<Record>>;
 
 impl Motions {
-    /// `all_rows`: whether all rows of the plan are recorded instead of the last; `threads` members
-    /// are in progress at a time. The model is derived unless it has been.
+    /// The work of integrating the members. `all_rows` says whether all rows of the plan are recorded instead
+    /// of the last one; `threads` is the number of members in progress at a time. The equations of the model
+    /// are derived unless they are given as `derived`.
     ///
     /// # Errors
     /// [`RunError::Rows`] if the rows of the members in progress take more memory than they may.
@@ -82,7 +84,8 @@ impl Motions {
         })
     }
 
-    /// What is known of a member before its motion and, if it can be integrated beside others, its field and its start.
+    /// What is known about a member before its motion and, if it can be integrated side by side with others, its field
+    /// and its start.
     fn begin(&self, member: u64) -> (Begun, Option<(LaneField, Vec<f64>)>) {
         let blank = self.members.blank(member);
         match self.flow(&self.members.model(&blank)) {
@@ -96,7 +99,7 @@ impl Motions {
         }
     }
 
-    /// The record of a member that was completed beside others.
+    /// The record of a member that was completed side by side with others.
     fn completed(&self, begun: Begun, trajectory: &Trajectory) -> Option<Record> {
         let (mut flow, blank) = *begun.ok()?;
         self.beside.fetch_add(1, Ordering::Relaxed);
@@ -108,7 +111,8 @@ impl Motions {
         })
     }
 
-    /// Integrates a member; none if it was stopped on its way, or the time limit had passed.
+    /// Integrates a member and returns its record; none if it was stopped before the end, or the time limit
+    /// had passed.
     fn integrate(&self, begun: Begun, stop: &Stop<'_>) -> Option<Record> {
         let (mut flow, blank) = match begun {
             Ok(begun) => *begun,
@@ -140,7 +144,7 @@ impl Motions {
         })
     }
 
-    /// The motion of a member, or its error.
+    /// The equations of motion of a member, or its error.
     fn flow(&self, model: &Model) -> Result<Flow, String> {
         if let Some(flow) = self.prototype.as_ref().and_then(|known| known.flow(model, self.plan.t_start)) {
             return Ok(flow);
@@ -152,8 +156,8 @@ impl Motions {
         is_alike.then_some(flow).ok_or_else(other)
     }
 
-    /// All rows, or the last one with the drifts; the end that was `reached` is one more. There is always at
-    /// least one row.
+    /// All rows, or only the last one with the drifts; the end that was `reached`, if given, is a further
+    /// row. There is always at least one row.
     fn rows_of(&self, flow: &mut Flow, trajectory: &Trajectory, reached: Option<(f64, &[f64])>) -> Vec<f64> {
         let table = Table::new(flow, trajectory);
         let last = reached.map(|(t, y)| std::iter::once(t).chain(flow.row(t, y)).collect::<Vec<f64>>());
@@ -177,7 +181,8 @@ impl Work for Motions {
         self.rows
     }
 
-    /// With the equations by which the members are integrated, their own or those shared by all.
+    /// The equations compared are those with which the members are integrated: their own, or those shared by
+    /// all.
     fn vouched(&self) -> Result<(), RunError> {
         for model in self.members.samples() {
             let graph = model.graph();
@@ -189,7 +194,7 @@ impl Work for Motions {
         Ok(())
     }
 
-    /// Side by side in vectors, as far as possible.
+    /// The members are integrated side by side in vectors, as far as possible.
     fn records(
         &self,
         ensemble: &Ensemble<'_>,
@@ -220,19 +225,19 @@ impl Work for Motions {
     }
 }
 
-/// The columns of a motion, with those of them that should stay constant.
+/// The columns of a motion, and which of them should stay constant.
 struct Columns {
     names: Vec<String>,
     conserved: Range<usize>,
 }
 
 impl Columns {
-    /// The columns of the table that the rows come from.
+    /// The columns of the table from which the rows come.
     fn of(table: &Table) -> Columns {
         Columns { names: table.columns().to_vec(), conserved: table.conserved() }
     }
 
-    /// The columns of a member, with the drifts of what should stay constant, if requested.
+    /// The columns of a member, followed by the drifts of those that should stay constant, if requested.
     fn in_rows(&self, drifts: bool) -> Vec<Column> {
         let kept = if drifts { &self.names[self.conserved.clone()] } else { &[] };
         let drifts = kept.iter().map(|name| format!("drift({name})"));
@@ -240,7 +245,8 @@ impl Columns {
     }
 }
 
-/// The columns of `pc run` as far as the text has them, for a sweep of which no member begins.
+/// The columns of `pc run`, as far as they are known from the text, for a sweep none of whose members can
+/// begin.
 fn written(model: &Model) -> Columns {
     let document = model.document();
     let named = |list: &[NamedExpression]| list.iter().map(|item| item.name.text.clone()).collect::<Vec<_>>();
@@ -250,13 +256,13 @@ fn written(model: &Model) -> Columns {
     Columns { names: [state, kept, named(&document.outputs)].concat(), conserved }
 }
 
-/// What is known before the first member is begun.
+/// What is known before the first member begins.
 #[derive(Default)]
 struct Begin {
     /// The table without its rows; none if no member has a motion.
     table: Option<Table>,
     tolerances: Tolerances,
-    /// The equations, if the members differ from the model in numbers only.
+    /// The equations, if the members differ from the model only in numbers.
     prototype: Option<Arc<Prototype>>,
 }
 
@@ -268,8 +274,8 @@ impl Begin {
     }
 }
 
-/// What is known from the model itself or, if it has no motion, from the first member that has one. It is the
-/// same for each shard.
+/// What is known from the model itself or, if it has no motion, from the first member that has one. The
+/// result is the same for each shard.
 fn begun(model: &Model, design: &Design, plan: &Plan) -> Begin {
     if let Ok(derived) = model.derived(|assembly| Derived::of(model, assembly, plan.form)) {
         return Begin::of(&derived, plan);
@@ -290,7 +296,7 @@ fn derived(model: &Model, variables: Variables) -> Result<Flow, ModelError> {
     Flow::new(model, &model.assemble(&graph)?, variables)
 }
 
-/// max |I(t) − I(t_start)| of column `j`, including one further row.
+/// The drift max |I(t) − I(t_start)| of column `j`, where one further row may be included.
 fn drift(table: &Table, more: Option<&[f64]>, j: usize) -> f64 {
     let drift = table.drift(j).absolute;
     match (table.rows().next(), more) {

@@ -6,7 +6,7 @@ pub enum SweepOf {
     /// Its motion.
     #[default]
     Run,
-    /// The eigenvalues at a state near its start.
+    /// Its eigenvalues at a state near its start.
     Linearize,
     /// Its properties.
     Check,

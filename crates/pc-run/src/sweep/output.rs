@@ -1,5 +1,5 @@
-//! The table of a sweep as a file, made from its records in an amount of memory that does not depend on their
-//! number.
+//! Writes the table of a sweep to a file, using an amount of memory that does not depend on the number of
+//! records.
 
 use std::io;
 
@@ -38,7 +38,7 @@ impl Rows for SweepTable<'_> {
     }
 }
 
-/// Writes the table of the model with this title.
+/// Writes the table, for a model with this title.
 ///
 /// # Errors
 /// [`FileError::Write`]; an existing file is then unchanged.

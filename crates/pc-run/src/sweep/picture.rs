@@ -1,5 +1,5 @@
-//! The picture of a sweep: curves over one parameter, a colour for each pair over two, histograms
-//! of random members.
+//! The picture of a sweep: curves over one parameter, a coloured cell for each pair of values of two
+//! parameters, or histograms of random members.
 
 use std::io;
 
@@ -13,16 +13,16 @@ use crate::sweep::record::Status;
 use crate::sweep::sweep_columns::SweepColumns;
 use pc_print::short;
 
-/// The most panels unless columns are chosen.
+/// The largest number of panels, unless columns are chosen.
 const MOST_PANELS: usize = 8;
-/// The most curves of members over time.
+/// The largest number of members whose curves over time are shown.
 const MOST_MEMBERS: usize = 8;
 /// The quantiles that are shown, with their names.
 const QUANTILES: [(f64, &str); 5] =
     [(0.05, "5 %"), (0.25, "25 %"), (0.5, "median"), (0.75, "75 %"), (0.95, "95 %")];
 
-/// An error, before anything is computed, unless a sweep in which the varied quantities have
-/// `counts` values can be drawn.
+/// An error, before anything is computed, if a sweep whose varied quantities have these `counts` of values
+/// cannot be drawn.
 ///
 /// # Errors
 /// [`SweepPlotError`]
@@ -46,7 +46,7 @@ pub(crate) fn check(
     }
 }
 
-/// The indices of the chosen columns among those of the motion; all but time and drifts if none is
+/// The indices of the chosen columns among those of the results; all except time and drifts if none is
 /// chosen.
 fn chosen(sheet: &SweepColumns, wanted: &[String]) -> Result<Vec<usize>, SweepPlotError> {
     let names = sheet.numbers();
@@ -64,12 +64,12 @@ fn chosen(sheet: &SweepColumns, wanted: &[String]) -> Result<Vec<usize>, SweepPl
     wanted.iter().map(place).collect()
 }
 
-/// Whether number `j` of a row is its time.
+/// Whether number `j` in a row is its time.
 fn is_time(sheet: &SweepColumns, j: usize) -> bool {
     sheet.of() == SweepOf::Run && j == 0
 }
 
-/// What a curve, a colour or a bar shows about a member.
+/// A phrase for what a curve, a colour or a bar shows about a member.
 fn shown(of: SweepOf) -> &'static str {
     match of {
         SweepOf::Run => "At the end",
@@ -78,15 +78,15 @@ fn shown(of: SweepOf) -> &'static str {
     }
 }
 
-/// Behind the name of a column, when it is shown.
+/// What to add to the name of a column, to say at which time it is shown.
 fn at_the_end(of: SweepOf) -> &'static str {
     if of == SweepOf::Run { " at the end" } else { "" }
 }
 
-/// A member that ended as it should, in the chosen columns.
+/// A member that ended as it should, with its values in the chosen columns.
 struct Member {
     values: Vec<f64>,
-    /// For each row, its time, or its first number if rows have no time; then the columns.
+    /// The rows: each contains its time, or its first number if rows have no time, and then the columns.
     rows: Vec<Vec<f64>>,
 }
 
@@ -99,7 +99,7 @@ impl Member {
 /// The picture of finished members.
 ///
 /// # Errors
-/// [`SweepError::Drawn`], and [`SweepError::Read`] where members cannot be read.
+/// [`SweepError::Drawn`], and [`SweepError::Read`] if members cannot be read.
 pub fn picture(
     title: &str,
     sheet: &SweepColumns,
@@ -183,7 +183,7 @@ fn drawn(
     Ok(Ok(Picture { title: title.to_owned(), remarks, panels }))
 }
 
-/// Unless columns are chosen, the first few that are not the same in all members.
+/// The columns to show: unless they are chosen, the first few that are not the same in all members.
 fn interesting(finished: &mut [Member], places: &[usize], remarks: &mut Vec<String>) -> Vec<usize> {
     let differs = |k: usize| {
         let mut all = finished.iter().flat_map(|member| member.rows.iter().map(move |row| row[1 + k]));
@@ -206,7 +206,7 @@ fn interesting(finished: &mut [Member], places: &[usize], remarks: &mut Vec<Stri
     kept.into_iter().map(|k| places[k]).collect()
 }
 
-/// The different values of a varied quantity, in order.
+/// The distinct values of a varied quantity, in order.
 fn values(finished: &[Member], j: usize) -> Vec<f64> {
     let mut values: Vec<f64> = finished.iter().map(|member| member.values[j]).collect();
     values.sort_by(f64::total_cmp);
@@ -214,7 +214,7 @@ fn values(finished: &[Member], j: usize) -> Vec<f64> {
     values
 }
 
-/// A logarithmic scale where the ratio of successive values is constant, else a linear one.
+/// A logarithmic scale if the ratio of successive values is constant, otherwise a linear one.
 fn scale_of(values: &[f64]) -> Scale {
     let ratios: Vec<f64> = values.windows(2).map(|pair| pair[1] / pair[0]).collect();
     let even = |ratio: &f64| (ratio - ratios[0]).abs() < 1e-6 * ratios[0];
@@ -227,7 +227,7 @@ fn placed(value: f64, scale: Scale) -> f64 {
     if scale == Scale::Decades { value.log10() } else { value }
 }
 
-/// Curves over what is varied.
+/// Curves over the quantity that is varied.
 fn curves(finished: &[Member], j: usize, varied: &str, (names, of): (&[String], SweepOf)) -> Vec<Panel> {
     let scale = scale_of(&values(finished, j));
     let curve = |(k, name): (usize, &String)| {
@@ -248,7 +248,8 @@ fn span(curve: Option<&Curve>) -> Option<(f64, f64)> {
     (first != last).then_some((first.min(last), first.max(last)))
 }
 
-/// A column over time, a curve for each member or, if there are many, for some evenly chosen ones.
+/// A column over time, with a curve for each member or, if there are many, for some members chosen at even
+/// intervals.
 fn paths(finished: &[Member], k: usize, name: &str, label: &dyn Fn(&Member) -> String) -> Panel {
     let count = finished.len().min(MOST_MEMBERS);
     let last = finished.len().saturating_sub(1);
@@ -259,7 +260,7 @@ fn paths(finished: &[Member], k: usize, name: &str, label: &dyn Fn(&Member) -> S
     Panel::over("t", name, Scale::Linear, (0..count).map(curve).collect())
 }
 
-/// A colour for each pair of values.
+/// A coloured cell for each pair of values.
 fn cells(
     finished: &[Member],
     [(a, x), (b, y)]: [(usize, &str); 2],
@@ -287,7 +288,7 @@ fn cells(
     }
 }
 
-/// A histogram of the values of the members, with the quantiles.
+/// A histogram of the values of the members, with their quantiles.
 fn histogram(finished: &[Member], k: usize, name: &str, of: SweepOf) -> Panel {
     let mut values: Vec<f64> =
         finished.iter().map(|member| member.last(k)).filter(|v| v.is_finite()).collect();
@@ -308,7 +309,7 @@ fn histogram(finished: &[Member], k: usize, name: &str, of: SweepOf) -> Panel {
     }
 }
 
-/// Bars of equal width, 2 r n^(−1/3) if that is reasonable, with the interquartile range r
+/// Bars of equal width, which is 2 r n^(−1/3) if that is reasonable, where r is the interquartile range
 /// [Freedman, Diaconis 1981].
 fn bars(sorted: &[f64]) -> Vec<[f64; 3]> {
     let (Some(&low), Some(&high)) = (sorted.first(), sorted.last()) else { return Vec::new() };
@@ -329,7 +330,7 @@ fn bars(sorted: &[f64]) -> Vec<[f64; 3]> {
     bars
 }
 
-/// Quantiles of a column over time.
+/// The quantiles of a column over time.
 fn bands(finished: &[Member], k: usize, name: &str) -> Panel {
     let grid = finished.iter().map(|member| &member.rows).max_by_key(|rows| rows.len());
     let times: Vec<f64> = grid.map_or_else(Vec::new, |rows| rows.iter().map(|row| row[0]).collect());
@@ -348,7 +349,7 @@ fn bands(finished: &[Member], k: usize, name: &str) -> Panel {
     Panel { span, ..Panel::over("t", name, Scale::Linear, curves) }
 }
 
-/// The quantile of sorted values, by linear interpolation between two of them.
+/// A quantile of sorted values, found by linear interpolation between two of them.
 fn quantile(sorted: &[f64], part: f64) -> Option<f64> {
     let place = part * (sorted.len().checked_sub(1)?) as f64;
     let (below, rest) = (place.floor() as usize, place.fract());

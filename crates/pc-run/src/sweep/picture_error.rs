@@ -1,6 +1,6 @@
 //! Why a sweep cannot be drawn.
 
-/// The most cells of a panel: a picture has no more points.
+/// The largest number of cells in a panel: a picture has no more points than this.
 pub(super) const MOST_CELLS: u64 = 250_000;
 
 /// Why a sweep cannot be drawn.
@@ -14,12 +14,12 @@ pub enum SweepPlotError {
         /// How many quantities have more than one value.
         varied: usize,
     },
-    /// More members than there are cells for colours.
+    /// There are more members than coloured cells.
     #[error(
         "{members} members are more than the {MOST_CELLS} colours that can be told apart; give fewer values"
     )]
     Cells {
-        /// How many there are.
+        /// How many members there are.
         members: u64,
     },
     /// A column that does not exist.

@@ -19,7 +19,7 @@ impl Status {
     const ALL: [Status; 5] =
         [Status::Completed, Status::Failed, Status::Refused, Status::Panicked, Status::Event];
 
-    /// Its name in the table.
+    /// The name of the status in the table.
     pub fn word(self) -> &'static str {
         match self {
             Status::Completed => "completed",
@@ -34,24 +34,24 @@ impl Status {
 /// A finished member.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
-    /// Its number, from 0.
+    /// Its number, counted from 0.
     pub member: u64,
     /// How it ended.
     pub status: Status,
     /// Internal steps.
     pub steps: u64,
-    /// Why it was not completed, or which event ended it; else empty.
+    /// Why it was not completed, or which event ended it; otherwise empty.
     pub message: String,
     /// The values of the varied quantities.
     pub values: Vec<f64>,
-    /// The numbers of the rows, one row after the other.
+    /// The numbers in its rows, one row after the other.
     pub rows: Vec<f64>,
-    /// The words of the rows, likewise.
+    /// The words in its rows, one row after the other.
     pub words: Vec<String>,
 }
 
 impl Record {
-    /// The record as bytes, all numbers little-endian.
+    /// The record as bytes, with all numbers little-endian.
     pub(crate) fn to_bytes(&self) -> Vec<u8> {
         let mut bytes =
             Vec::with_capacity(64 + self.message.len() + 8 * (self.values.len() + self.rows.len()));
@@ -72,7 +72,7 @@ impl Record {
         bytes
     }
 
-    /// The record from its bytes.
+    /// Reads a record from its bytes.
     pub(crate) fn from_bytes(mut bytes: &[u8]) -> Option<Record> {
         let bytes = &mut bytes;
         let record = Record {

@@ -3,12 +3,12 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// Every `of`-th member, since neighbours often cost the same.
+/// A part of a sweep: every `of`-th member, since neighbouring members often cost the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// Its number, from 1.
+    /// Its number, counted from 1.
     pub number: u64,
-    /// How many there are.
+    /// How many shards there are.
     pub of: u64,
 }
 
@@ -16,10 +16,10 @@ impl Shard {
     /// The whole sweep.
     pub(crate) const ALL: Shard = Shard { number: 1, of: 1 };
 
-    /// As on the command line: `3/8`.
+    /// Reads a shard as written on the command line, such as `3/8`.
     ///
     /// # Errors
-    /// The correct form.
+    /// The message shows the correct form.
     pub fn parse(text: &str) -> Result<Shard, String> {
         let parts =
             text.split_once('/').and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
@@ -30,12 +30,12 @@ impl Shard {
         }
     }
 
-    /// Its member number `place`, from 0.
+    /// The number in the sweep of the shard's member number `place`; both are counted from 0.
     pub(crate) fn member(self, place: u64) -> u64 {
         self.number - 1 + place * self.of
     }
 
-    /// How many of `all` members it has.
+    /// How many of `all` members belong to the shard.
     pub(crate) fn members(self, all: u64) -> u64 {
         (all + self.of - self.number) / self.of
     }

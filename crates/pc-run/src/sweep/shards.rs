@@ -1,4 +1,4 @@
-//! All shards of a sweep, as one table.
+//! Puts all shards of a sweep together as one table.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -9,14 +9,14 @@ use crate::sweep::journal::{Journal, Records, Tally};
 use crate::sweep::shard::Shard;
 use crate::sweep::sweep_columns::SweepColumns;
 
-/// Names of the entries in the header of a shard, in addition to those of any sweep.
+/// The names of the entries in the header of a shard, in addition to those in the header of any sweep.
 const SHARD: &str = "--shard";
 const MEMBERS: &str = "the number of members:";
 const TITLE: &str = "the title";
 const SHEET: &str = "the columns";
 const RANDOM: &str = "--random";
 
-/// The header of a shard, so that shards can be merged without the model.
+/// The header of a shard, which contains enough to merge shards without the model.
 pub(crate) fn described(
     mut header: Identity,
     shard: Shard,
@@ -34,7 +34,7 @@ pub(crate) fn described(
     header
 }
 
-/// Complete shards in their order.
+/// Complete shards, in order.
 #[derive(Debug)]
 pub struct Shards {
     journals: Vec<Journal>,
@@ -43,7 +43,7 @@ pub struct Shards {
     pub title: String,
     /// The columns.
     pub sheet: SweepColumns,
-    /// Whether the members were drawn.
+    /// Whether the members were drawn at random.
     pub is_random: bool,
 }
 
@@ -51,7 +51,7 @@ impl Shards {
     /// Opens the shards in these files, in any order.
     ///
     /// # Errors
-    /// [`SweepError`] if one is missing, given twice, incomplete, or of another sweep.
+    /// [`SweepError`] if a shard is missing, given twice, incomplete, or from another sweep.
     pub fn open(paths: &[PathBuf]) -> Result<Shards, SweepError> {
         let mut first: Option<(Identity, PathBuf)> = None;
         let mut found: Vec<(Shard, Journal)> = Vec::new();
@@ -108,7 +108,7 @@ impl Shards {
         })
     }
 
-    /// The numbers of members by how they ended.
+    /// How many members ended in each way.
     pub fn tally(&self) -> Tally {
         Tally::sum(self.journals.iter().map(Journal::tally))
     }
@@ -118,7 +118,7 @@ fn entry<'i>(header: &'i Identity, name: &str) -> Option<&'i str> {
     header.iter().find(|(known, _)| known == name).map(|(_, value)| value.as_str())
 }
 
-/// Which shard it is, and the total number of members.
+/// Which shard this is, and the total number of members.
 fn shard(header: &Identity) -> Option<(Shard, u64)> {
     let shard = Shard::parse(entry(header, SHARD)?).ok()?;
     Some((shard, entry(header, MEMBERS)?.parse().ok()?))

@@ -8,7 +8,7 @@ use super::of::SweepOf;
 use super::record::Record;
 use crate::table::rows::{Cell, CellKind, Column};
 
-/// A record that is not made of whole rows: its names and numbers come from different tables.
+/// A record that does not consist of whole rows: its names and numbers come from different tables.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "member {member} has {} varied values, {} numbers and {} words, which do not fill rows of {}, {} and {}; no table is written, because this is a defect of this program",
@@ -17,9 +17,9 @@ use crate::table::rows::{Cell, CellKind, Column};
 pub struct Misshapen {
     /// The member.
     pub member: u64,
-    /// Its varied values, its numbers and its words.
+    /// How many varied values, numbers and words it has.
     pub found: [usize; 3],
-    /// The numbers and words of one row.
+    /// How many varied values, numbers and words belong to one row.
     pub columns: [usize; 3],
 }
 
@@ -28,16 +28,24 @@ pub struct Misshapen {
 pub struct SweepColumns {
     of: SweepOf,
     columns: Vec<Column>,
-    /// How many values are varied.
+    /// How many columns are varied quantities.
     varied: usize,
     /// How many columns are results.
     results: usize,
 }
 
+<<<<<<< HEAD:crates/pc-run/src/sweep/sweep_columns.rs
 impl SweepColumns {
     /// Number of the member, what is varied, how it ended, then `results`, steps of a motion, and message.
     pub(crate) fn new(of: SweepOf, names: &[String], results: &[Column]) -> SweepColumns {
         let varied: Vec<Column> = names.iter().map(|name| Column::new(name, CellKind::Number)).collect();
+=======
+impl Sheet {
+    /// The columns of a sweep: the number of the member, the varied quantities, how the member ended, then
+    /// `results`, the steps of a motion, and a message.
+    pub(crate) fn new(of: SweepOf, names: &[String], results: &[Column]) -> Sheet {
+        let varied: Vec<Column> = names.iter().map(|name| Column::new(name, Kind::Number)).collect();
+>>>>>>> eng5:crates/pc-run/src/sweep/sheet.rs
         // What is varied and shown is the same, as a parameter that is an integral would be: names are of one space.
         let taken: Vec<&str> = varied.iter().chain(results).map(|column| column.name.as_str()).collect();
         let free = |name: &str, kind| {
@@ -66,8 +74,13 @@ impl SweepColumns {
         json!([self.of.word(), self.varied, self.results, columns]).to_string()
     }
 
+<<<<<<< HEAD:crates/pc-run/src/sweep/sweep_columns.rs
     /// The sheet from its text.
     pub(crate) fn from_text(text: &str) -> Option<SweepColumns> {
+=======
+    /// Reads a sheet from its text.
+    pub(crate) fn from_text(text: &str) -> Option<Sheet> {
+>>>>>>> eng5:crates/pc-run/src/sweep/sheet.rs
         type Parts = (String, usize, usize, Vec<(String, u8)>);
         let (of, varied, results, columns): Parts = serde_json::from_str(text).ok()?;
         let of = SweepOf::of_word(&of)?;
@@ -86,7 +99,7 @@ impl SweepColumns {
         Some(SweepColumns { of, columns, varied, results })
     }
 
-    /// Names of the varied quantities.
+    /// The names of the varied quantities.
     pub(crate) fn varied(&self) -> impl Iterator<Item = &str> {
         self.columns[1..=self.varied].iter().map(|column| column.name.as_str())
     }
@@ -97,7 +110,7 @@ impl SweepColumns {
         &self.columns[from..from + self.results]
     }
 
-    /// Names of the numbers among the results.
+    /// The names of those results that are numbers.
     pub(crate) fn numbers(&self) -> Vec<&str> {
         let numbers = self.results().iter().filter(|column| column.kind == CellKind::Number);
         numbers.map(|column| column.name.as_str()).collect()
@@ -108,7 +121,7 @@ impl SweepColumns {
         &self.columns
     }
 
-    /// An error unless the numbers and words of a member fill whole rows, at least one.
+    /// An error unless the numbers and words of a member fill one or more whole rows.
     ///
     /// # Errors
     /// [`Misshapen`]
@@ -134,7 +147,7 @@ impl SweepColumns {
         })
     }
 
-    /// The rows of a member, at least one.
+    /// The rows of a member, of which there is at least one.
     ///
     /// # Errors
     /// [`Misshapen`], as [`io::ErrorKind::InvalidData`].

@@ -5,13 +5,13 @@ use std::fmt;
 /// A quantity with its values: `NAME=FROM:TO:N`, `NAME=FROM:TO:N:log` or `NAME=A,B,…`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vary {
-    /// The parameter, or what has a start value.
+    /// The name of a parameter, or of something that has a start value.
     pub name: String,
     /// Its values.
     pub values: Values,
 }
 
-/// The values of a varied quantity, at least one.
+/// The values of a varied quantity, of which there is at least one.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
     /// This many values from one number to another, evenly spaced.
@@ -23,7 +23,7 @@ pub enum Values {
 }
 
 impl Values {
-    /// How many there are.
+    /// How many values there are.
     pub fn count(&self) -> u64 {
         match self {
             Values::Even(_, _, count) | Values::Logarithmic(_, _, count) => *count,

@@ -4,7 +4,8 @@
 //! Design ─ values of a member ─► Work ─ its motion, eigenvalues or properties ─► Record ─► Journal ─► table
 //!          on all cores, by pc_solve::Ensemble                       in the order of the members
 //! ```
-//! The journal is the only link between a member and the table, so a sweep may end at any moment and continue later.
+//! The journal is the only link between a member and the table, so a sweep may be interrupted at any moment and
+//! continued later.
 
 use std::num::NonZeroUsize;
 use std::ops::{ControlFlow, Range};
@@ -36,22 +37,22 @@ use crate::observer::Observer;
 use crate::plan::Plan;
 use crate::plan::Wishes;
 
-/// Bytes of finished members that may wait for an earlier one.
+/// The largest number of bytes of finished members that may wait for an earlier member.
 const WAITING: usize = 64 << 20;
-/// Finished members that may wait for an earlier one.
+/// The largest number of finished members that may wait for an earlier one.
 const MOST_WAITING: usize = 4096;
 
-/// What is computed for each member.
+/// What to compute for each member, and how.
 #[derive(Clone, Debug, Default)]
 pub struct SweepWishes {
     /// What a sweep computes.
     pub of: SweepOf,
-    /// How motions are integrated; all their rows are recorded if `samples` are given, else the last one with
-    /// the drifts.
+    /// How to integrate motions; all their rows are recorded if `samples` is given, otherwise only the last
+    /// row with the drifts.
     pub run: Wishes,
-    /// The state of linearizations.
+    /// The state at which to linearize.
     pub state: StateChoice,
-    /// The number of threads, by default one for each core. The result is the same for any number.
+    /// The number of threads; by default, one for each core. The result is the same for any number.
     pub threads: Option<NonZeroUsize>,
 }
 
@@ -66,23 +67,23 @@ pub struct Sweep {
     is_random: bool,
     /// How many values each quantity of a grid has.
     counts: Vec<u64>,
-    /// What the result depends on.
+    /// Everything on which the result depends.
     header: Identity,
 }
 
 /// The members of a sweep that were computed.
 #[derive(Clone, Debug)]
 pub struct Swept {
-    /// How many were finished before.
+    /// How many members were finished before.
     pub before: u64,
-    /// All members, by how they ended.
+    /// How many of all members ended in each way.
     pub tally: Tally,
     /// The time it took.
     pub wall: Duration,
 }
 
 impl Sweep {
-    /// The sweep of a model, in which the names in `set` are not varied.
+    /// A sweep of a model; the names in `set` must not be varied.
     ///
     /// # Errors
     /// [`RunError`] if the text of the model is wrong, or the work is not defined for it.
@@ -111,8 +112,8 @@ impl Sweep {
         })
     }
 
-    /// The motions of members in memory, with equations that have been derived: all rows of the
-    /// plan, or else the last of each.
+    /// A sweep that integrates members in memory, with equations that have been derived; it records all rows
+    /// of the plan or, for each member, only the last.
     ///
     /// # Errors
     /// [`RunError::Rows`] if the rows take more memory than they may.
@@ -135,8 +136,8 @@ impl Sweep {
     /// The records of all members, in order.
     ///
     /// # Errors
-    /// [`SweepError::Ended`] and [`SweepError::Interrupted`] if there are fewer, and an error if threads
-    /// cannot be started.
+    /// [`SweepError::Ended`] or [`SweepError::Interrupted`] if there are fewer records than members, and an
+    /// error if threads cannot be started.
     pub fn collect(&self, observer: &dyn Observer) -> Result<Vec<Record>, SweepError> {
         let mut progress = observer.members(0, self.members);
         let mut all = Vec::new();
@@ -153,10 +154,11 @@ impl Sweep {
         }
     }
 
-    /// Compares the first member, one in the middle and the last with a second derivation of each.
+    /// Compares the first member, a member in the middle and the last member with a second derivation of
+    /// each.
     ///
     /// # Errors
-    /// [`RunError::Verify`] if that disagrees.
+    /// [`RunError::Verify`] if a second derivation disagrees.
     pub fn vouched(&self) -> Result<(), RunError> {
         self.work.vouched()
     }
@@ -166,22 +168,22 @@ impl Sweep {
         &self.title
     }
 
-    /// The columns of its table.
+    /// The columns of the sweep's table.
     pub fn sheet(&self) -> &SweepColumns {
         &self.sheet
     }
 
-    /// Whether the members are drawn.
+    /// Whether the members are drawn at random.
     pub fn is_random(&self) -> bool {
         self.is_random
     }
 
-    /// Labelled lines on the work.
+    /// Labelled lines that describe the work to be done.
     pub fn said(&self) -> Vec<(&'static str, String)> {
         self.work.said()
     }
 
-    /// Remarks on the work that was done, after the time it took.
+    /// Remarks on the work that was done, which are printed after the time it took.
     pub fn done(&self) -> String {
         self.work.done()
     }
@@ -194,8 +196,8 @@ impl Sweep {
         picture::check(&self.sheet, columns, &self.counts, self.is_random).map_err(SweepError::Drawn)
     }
 
-    /// The journal beside the table with this path: a new one, or the one that the same sweep, or
-    /// the same shard of it, has left.
+    /// The journal beside the table with this path: a new one, or the one that the same sweep, or the same
+    /// shard of it, left behind.
     ///
     /// # Errors
     /// [`SweepError`] if it belongs to another sweep or is in use.
@@ -238,7 +240,7 @@ impl Sweep {
         Ok(Swept { before, tally: journal.tally().clone(), wall: start.elapsed() })
     }
 
-    /// The records of the members of a shard at these places, in order, until `take` breaks.
+    /// Passes the records of the members of a shard at these places to `take`, in order, until it breaks.
     fn each(
         &self,
         shard: Shard,
@@ -267,7 +269,7 @@ impl Sweep {
     }
 }
 
-/// The requested work, with what it depends on.
+/// The requested work, and everything on which it depends.
 fn begun(
     wishes: &SweepWishes,
     model: Model,
@@ -301,8 +303,8 @@ fn workers(threads: Option<NonZeroUsize>) -> usize {
     threads.or_else(available).map_or(1, NonZeroUsize::get)
 }
 
-/// An error unless the text of the model is right. A model that is inconsistent only for its
-/// parameter values may be consistent in a member.
+/// An error if the text of the model is wrong. A model that contradicts itself is not refused, since it may
+/// be consistent with the values of a member.
 fn look(model: &Model, observer: &dyn Observer) -> Result<(), RunError> {
     let graph = model.graph();
     match model.assemble(&graph) {
@@ -315,7 +317,7 @@ fn look(model: &Model, observer: &dyn Observer) -> Result<(), RunError> {
     }
 }
 
-/// What the result depends on.
+/// Everything on which the result depends.
 fn header(depends_on: Identity, variation: &Variation, wishes: &SweepWishes) -> Identity {
     let list = |items: &mut dyn Iterator<Item = String>| items.collect::<Vec<_>>().join(" ");
     let number = |number: Option<String>| number.unwrap_or_else(|| "none".to_owned());

@@ -1,4 +1,4 @@
-//! What a sweep does for each of its members: from a model to a record.
+//! The work that a sweep does for each of its members, from a model to a record.
 
 use std::ops::{ControlFlow, Range};
 
@@ -9,27 +9,27 @@ use super::record::Record;
 use super::shard::Shard;
 use crate::error::RunError;
 
-/// Receives the record of a member, given by its place in the shard; none if it was interrupted on its way or ended by a time
+/// Receives the place of a member in the shard and its record, which is none if the member was interrupted or ended by a time
 /// limit.
 pub(crate) type Consume<'c> = &'c mut dyn FnMut(u64, Result<Option<Record>, Panicked>) -> ControlFlow<()>;
 
-/// The work of a sweep: one record per member, whose rows all have the same columns.
+/// The work of a sweep: it makes one record for each member, and all rows have the same columns.
 pub(crate) trait Work {
     /// The models, and the contents of their rows.
     fn members(&self) -> &Members;
 
-    /// Compares some members with a second derivation of each, before any begins.
+    /// Compares some members with a second derivation of each, before any member begins.
     ///
     /// # Errors
-    /// [`RunError::Verify`] if that disagrees.
+    /// [`RunError::Verify`] if a second derivation disagrees.
     fn vouched(&self) -> Result<(), RunError>;
 
-    /// Rows of a member.
+    /// The number of rows of a member.
     fn rows(&self) -> usize {
         1
     }
 
-    /// The records of the members of a shard at these places, in their order.
+    /// Passes the records of the members of a shard at these places to `consume`, in order.
     ///
     /// # Errors
     /// [`EnsembleError`] if threads cannot be started.
@@ -41,12 +41,12 @@ pub(crate) trait Work {
         consume: Consume<'_>,
     ) -> Result<Ending, EnsembleError>;
 
-    /// Lines of the summary before the number of members.
+    /// The lines of the summary that precede the number of members.
     fn said(&self) -> Vec<(&'static str, String)> {
         Vec::new()
     }
 
-    /// Remarks of the summary on the work that was done, after the time it took.
+    /// The remarks in the summary on the work that was done, which follow the time it took.
     fn done(&self) -> String {
         String::new()
     }

@@ -10,7 +10,7 @@ pub(crate) struct Array {
     pub(crate) columns: usize,
     /// Whether it is a vector: a column written as a list.
     pub(crate) is_list: bool,
-    /// Row after row.
+    /// The entries, row by row.
     pub(crate) real: Vec<f64>,
     pub(crate) imaginary: Option<Vec<f64>>,
 }
@@ -32,7 +32,7 @@ impl Array {
         Array { name: name.to_owned(), rows: real.len(), columns: 1, is_list: true, real, imaginary: None }
     }
 
-    /// From rows of pairs of real and imaginary part.
+    /// A complex array, from rows of pairs of real and imaginary parts.
     pub(crate) fn complex(name: &str, rows: &[Vec<(f64, f64)>]) -> Array {
         let (real, imaginary) = rows.iter().flatten().copied().unzip();
         let columns = rows.first().map_or(0, Vec::len);

@@ -7,7 +7,7 @@ use pc_print::one_line;
 
 use crate::table::rows::{Cell, Rows};
 
-/// A header, then a line for each row, numbers with 17 significant digits, which reproduce them
+/// Writes a header, then a line for each row. Numbers have 17 significant digits, which reproduce them
 /// exactly; text is quoted if necessary.
 ///
 /// # Errors
@@ -17,7 +17,7 @@ pub fn write(table: &dyn Rows, out: &mut dyn Write) -> io::Result<()> {
     table.each(&mut |cells| row(cells.iter().copied(), out))
 }
 
-/// The line of a row.
+/// The line for a row.
 pub(crate) fn row<'a>(cells: impl IntoIterator<Item = Cell<'a>>, out: &mut dyn Write) -> io::Result<()> {
     for (j, cell) in cells.into_iter().enumerate() {
         let comma = if j == 0 { "" } else { "," };
@@ -35,7 +35,7 @@ pub(crate) fn header<'n>(names: impl IntoIterator<Item = &'n String>) -> String 
     names.into_iter().map(|name| field(name)).collect::<Vec<_>>().join(",")
 }
 
-/// Text as a field on one line, in quotes where it needs them (RFC 4180).
+/// A text as a field on one line, in quotes if it needs them (RFC 4180).
 pub fn field(text: &str) -> String {
     let text: Cow<'_, str> = one_line(text);
     if text.contains([',', '"']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.into_owned() }

@@ -36,7 +36,7 @@ impl Format {
     /// The formats of lists.
     pub const OF_LISTS: &'static [Format] = &[Format::Json, Format::Csv];
 
-    /// The endings of file names.
+    /// The extension of file names in this format.
     pub fn extension(self) -> &'static str {
         match self {
             Format::Csv => "csv",
@@ -48,7 +48,7 @@ impl Format {
         }
     }
 
-    /// The endings of some formats in words.
+    /// A phrase that lists the extensions of some formats.
     fn expected(formats: &[Format]) -> String {
         let endings: Vec<String> = formats.iter().map(|format| format!(".{}", format.extension())).collect();
         let listed = match endings.split_last() {
@@ -69,7 +69,7 @@ pub struct TableFile {
 }
 
 impl TableFile {
-    /// A file in one of these formats, or a device for those that are written from front to end.
+    /// A file in one of these formats, or a device for formats that are written from beginning to end.
     ///
     /// # Errors
     /// [`FileError::UnknownExtension`]; [`FileError::Place`] if the file cannot be written.
@@ -95,7 +95,7 @@ impl TableFile {
         self.place.path()
     }
 
-    /// A stream for rows as they are computed, if this is a regular CSV file.
+    /// A stream that takes rows as they are computed, if this is a regular CSV file.
     pub fn stream(&self) -> Option<Stream<'_>> {
         (self.format == Format::Csv && self.place.device.is_none()).then(|| Stream::to(&self.place))
     }

@@ -1,4 +1,4 @@
-//! One JSON object: members, columns, rows, more members.
+//! Tables as one JSON object: members, columns, rows, and more members.
 
 use std::io::{self, Write};
 
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::table::rows::{Cell, Rows};
 
-/// Numbers have the fewest digits that reproduce them exactly; values that are not finite are null.
+/// Numbers have as few digits as reproduce them exactly; values that are not finite are null.
 ///
 /// # Errors
 /// [`io::Error`]

@@ -1,4 +1,4 @@
-//! MAT-files of level 5: MATLAB, GNU Octave and SciPy read them (The MathWorks, MAT-File Format).
+//! MAT-files of level 5, which MATLAB, GNU Octave and SciPy can read (The MathWorks, MAT-File Format).
 
 use std::io::{self, Write};
 
@@ -12,13 +12,13 @@ const DOUBLE: u32 = 9;
 const UINT16: u32 = 4;
 const MATRIX: u32 = 14;
 
-/// Classes of arrays, and the flag of complex ones.
+/// Classes of arrays, and the flag that marks complex ones.
 const CHARACTERS: u32 = 4;
 const DOUBLES: u32 = 6;
 const COMPLEX: u32 = 1 << 11;
 
-/// Writes arrays of numbers, then texts, each on one line. The file has no date: the same numbers
-/// give the same bytes.
+/// Writes arrays of numbers, then strings, each as one row of characters. The file has no date: the same
+/// numbers give the same bytes.
 pub(crate) fn write(arrays: &[Array], texts: &[(&str, String)], out: &mut dyn Write) -> io::Result<()> {
     let mut header = b"MATLAB 5.0 MAT-file, written by pc".to_vec();
     header.resize(124, b' ');
@@ -79,7 +79,7 @@ fn by_columns(array: &Array, numbers: &[f64]) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    /// Byte by byte as the format says.
+    /// The file is compared byte by byte with what the format prescribes.
     #[test]
     fn an_array_is_a_matrix_by_columns() {
         let array = Array {

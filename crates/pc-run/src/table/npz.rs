@@ -1,4 +1,4 @@
-//! NumPy's archive: `numpy.load(FILE)["name"]` is the array of that name.
+//! NumPy archives: `numpy.load(FILE)["name"]` is the array with that name.
 
 use std::io::{self, Error, ErrorKind, Seek, Write};
 
@@ -9,17 +9,17 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 use crate::table::array::Array;
 use crate::table::rows::{Cell, CellKind, Rows};
 
-/// The length, in numbers, from which an entry needs the archive format for more than 4 GiB.
+/// The number of numbers from which an entry needs the archive format for more than 4 GiB.
 const LARGE: u64 = (1 << 29) - 1024;
 
-/// The archive has no date, so that the same numbers give the same bytes.
+/// The options for entries. The archive has no date, so that the same numbers give the same bytes.
 fn options() -> SimpleFileOptions {
     SimpleFileOptions::default()
         .compression_method(CompressionMethod::Stored)
         .last_modified_time(DateTime::default())
 }
 
-/// One array for each column, of `f64`, `u64` or text, then the `lists`.
+/// Writes an array of `f64`, `u64` or text for each column, then the `lists`.
 ///
 /// # Errors
 /// [`io::Error`]
@@ -70,7 +70,7 @@ pub(crate) fn write(
     Ok(())
 }
 
-/// One array for each, a complex one with a last axis of real and imaginary part.
+/// Writes each of the arrays; a complex array has a final axis for the real and imaginary parts.
 ///
 /// # Errors
 /// [`io::Error`]
@@ -103,7 +103,7 @@ fn numbers<W: Write + Seek>(
     array.finish()
 }
 
-/// The number of rows, and of characters of the longest text of each column.
+/// The number of rows, and the number of characters in the longest text of each column.
 fn extent(table: &dyn Rows, columns: usize) -> io::Result<(u64, Vec<usize>)> {
     let (mut rows, mut lengths) = (0, vec![0; columns]);
     table.each(&mut |row| {
@@ -130,8 +130,9 @@ fn fill<T: npyz::Serialize, W: Write + Seek>(
     array.finish()
 }
 
-/// The name of a column as that of an entry of an archive, which stays in the directory where it is
-/// unpacked: `%` and what could leave it, such as the slash in `../x`, are percent-encoded.
+/// The name of a column as the name of an archive entry, which cannot leave the directory in which the
+/// archive is unpacked: `%` and everything that could lead out of it, such as the slash in `../x`, are
+/// percent-encoded.
 fn entry(name: &str) -> String {
     let leads = |c: Option<char>| matches!(c, None | Some('.' | '/'));
     let mut entry = String::with_capacity(name.len());

@@ -12,17 +12,18 @@ use parquet::schema::types::Type;
 
 use crate::table::rows::{self, Cell, CellKind, Rows};
 
-/// The most rows in memory.
+/// The largest number of rows held in memory.
 const GROUP: usize = 65_536;
 
-/// A column of a group of rows.
+/// One column of a group of rows.
 enum Column {
     Integers(Vec<i64>),
     Numbers(Vec<f64>),
     Texts(Vec<ByteArray>),
 }
 
-/// Required columns INT64 (unsigned), DOUBLE and BYTE_ARRAY (UTF-8), not compressed.
+/// Writes a table with required columns of types INT64 (unsigned), DOUBLE and BYTE_ARRAY (UTF-8), without
+/// compression.
 ///
 /// # Errors
 /// [`io::Error`]

@@ -1,11 +1,11 @@
-//! Tables as formats see them: columns, and rows of cells.
+//! Tables as the writers of formats see them: columns, and rows of cells.
 
 use std::io;
 
 /// The kind of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CellKind {
-    /// Whole numbers, not negative.
+    /// Whole numbers that are not negative.
     Integer,
     /// Numbers.
     Number,
@@ -23,7 +23,7 @@ pub struct Column {
 }
 
 impl Column {
-    /// A column of this name.
+    /// A column with this name.
     pub fn new(name: impl Into<String>, kind: CellKind) -> Column {
         Column { name: name.into(), kind }
     }
@@ -49,16 +49,16 @@ pub trait Rows {
     /// Its columns.
     fn columns(&self) -> Vec<Column>;
 
-    /// How many rows there are, if that is known without reading them.
+    /// The number of rows, if it is known without reading them.
     fn count(&self) -> Option<u64>;
 
-    /// Gives each row to `take`.
+    /// Passes each row to `take`.
     ///
     /// # Errors
-    /// [`io::Error`] from `take`, or from what the rows are read from.
+    /// [`io::Error`] from `take`, or from the source of the rows.
     fn each(&self, take: Take<'_>) -> io::Result<()>;
 
-    /// Gives each cell of column `j` to `take`.
+    /// Passes each cell of column `j` to `take`.
     ///
     /// # Errors
     /// As for [`each`](Rows::each).
