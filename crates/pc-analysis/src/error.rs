@@ -7,7 +7,7 @@ use pc_nonholo::NonholoError;
 /// An error of this crate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AnalysisError {
-    /// Newton's method ended where the rates do not vanish.
+    /// Newton's method ended at a state where the rates do not vanish.
     #[error(
         "no steady motion was found near the guess: after {iterations} steps the rates that should vanish have \
          the norm {} at t = {t}{}",
@@ -24,8 +24,8 @@ pub enum AnalysisError {
         /// Names and values of the state where the residual was least.
         state: Vec<(String, f64)>,
     },
-    /// Newton's method ended where the rates vanish but have no derivatives: for example at a pole of the
-    /// coordinates or of the frame.
+    /// Newton's method ended at a state where the rates vanish but have no derivatives, for example at a pole
+    /// of the coordinates or of the frame.
     #[error("the rates vanish, but have no derivatives, at{}", listed(state).trim_start_matches(','))]
     NotSmooth {
         /// Names and values of the state.
@@ -62,8 +62,8 @@ pub enum AnalysisError {
     /// A steady motion was requested for equations that depend on time.
     #[error("the equations depend on time explicitly, so that no state is steady")]
     DependsOnTime,
-    /// A steady motion was requested where the coordinates are not independent and their relations are not
-    /// known.
+    /// A steady motion was requested of equations whose coordinates are not independent and satisfy unknown
+    /// relations.
     #[error(
         "the start is not steady, as rates of norm {} show, and the functions of the coordinates that the frame keeps \
          are not known, so that no other state can be reached from it",
@@ -73,13 +73,13 @@ pub enum AnalysisError {
         /// √Σ f_i² over the components that are not cyclic.
         residual: f64,
     },
-    /// A box for a coordinate that equilibria do not depend on.
+    /// A box was given for a coordinate on which equilibria do not depend.
     #[error("`{name}` is cyclic: equilibria exist at any value of it, so it takes no box")]
     CyclicBox {
         /// The coordinate.
         name: String,
     },
-    /// An empty box.
+    /// A box is empty.
     #[error("the box of `{name}` from {} to {} is empty", readable(*low), readable(*high))]
     EmptyBox {
         /// The coordinate.
@@ -110,12 +110,12 @@ pub enum AnalysisError {
     /// A solution of Hamilton–Jacobi's equation with too few constants.
     #[error("the integral is not complete: the matrix ∂(X_s S)/∂α has rank {rank} of {size}")]
     IncompleteIntegral {
-        /// Rank at almost all points.
+        /// The rank at almost all points.
         rank: usize,
         /// Number k of quasi-velocities.
         size: usize,
     },
-    /// Newton's method ended where Jacobi's equations are not satisfied.
+    /// Newton's method ended at a position where Jacobi's equations are not satisfied.
     #[error(
         "∂S/∂α = β has no solution near the guess: after {iterations} steps the norm of the difference is {} at \
          t = {t}{}",
@@ -142,7 +142,7 @@ pub enum AnalysisError {
         /// The symbols that the function can contain.
         known: Vec<String>,
     },
-    /// An error of the derivation or of the numbers of a motion.
+    /// An error of the derivation, or of the numerical evaluation of a motion.
     #[error(transparent)]
     Mech(#[from] MechError),
     /// An error of the constraints.

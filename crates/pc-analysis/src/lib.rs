@@ -1,9 +1,9 @@
 //! Analysis of motions without integrating them: integrals, steady motions, stability, invariant measures.
 //!
 //! Numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994), with its misprints
-//! corrected; conventions are those of [`pc_mech`]. The analysis applies to its [`System`](pc_mech::System), of
-//! its [`Equations`](pc_mech::Equations) (9) and [`Canonical`](pc_mech::Canonical) equations (10), (11), and to
-//! the [`Motion`](pc_mech::Motion) that these are compiled to. Results are proved unless they are marked open.
+//! corrected; the conventions are those of [`pc_mech`]. The analysis applies to its [`System`](pc_mech::System),
+//! to its [`Equations`](pc_mech::Equations) (9) and [`Canonical`](pc_mech::Canonical) equations (10), (11), and to
+//! the [`Motion`](pc_mech::Motion) into which these are compiled. Results are proved unless they are marked open.
 //!
 //! # Frames
 //!
@@ -124,12 +124,12 @@
 //!
 //! # Steady motions and stability
 //!
-//! [`SteadyMotion::near`] finds states where all but the cyclic coordinates rest, with their first approximation. Its
-//! [`Spectrum`] shows instability, or asymptotic stability; the [`SecondVariation`] of the energy under constant
-//! integrals shows stability (Routh; Chetaev's bundle of integrals). Each gives a [`Verdict`], which may be undecided.
-//! [`SteadySearch::near`] finds the steady motion near a start that has the same integrals, and applies both;
-//! [`SteadyMotions::search`] finds those from many starts, and the equilibria. [`Variation`] is a motion with the
-//! deviations from it, δ̇ = (∂f/∂y) δ.
+//! [`SteadyMotion::near`] finds states in which all but the cyclic coordinates are at rest, with their first
+//! approximation. Its [`Spectrum`] shows instability, or asymptotic stability; the [`SecondVariation`] of the energy
+//! under constant integrals shows stability (Routh; Chetaev's bundle of integrals). Each gives a [`Verdict`], which
+//! may be undecided. [`SteadySearch::near`] finds the steady motion near a start with the same values of the
+//! integrals, and applies both; [`SteadyMotions::search`] finds steady motions from many starts, and the equilibria.
+//! [`Variation`] is a motion with the deviations from it, δ̇ = (∂f/∂y) δ.
 //!
 //! ```
 //! use pc_analysis::{SecondVariation, Spectrum, Verdict, first_approximation};
@@ -157,10 +157,10 @@
 //!
 //! # Linearization
 //!
-//! A [`Linearizer`] gives the matrices of the motions near a state, in independent components of the states
-//! on its [`Leaf`]: a [`Linearization`] with eigenvalues, [modes](Mode) and equations of the [second
-//! order](SecondOrder). A [`RootLocus`] follows eigenvalues over a parameter, an [`EquilibriumSearch`] looks
-//! for equilibria in a box.
+//! A [`Linearizer`] computes the matrices of the motions near a state, in independent components of the
+//! states on its [`Leaf`]: a [`Linearization`] with eigenvalues, [modes](Mode) and equations of the [second
+//! order](SecondOrder). A [`RootLocus`] follows eigenvalues as a parameter varies; an [`EquilibriumSearch`]
+//! looks for equilibria in a box.
 //!
 //! # Reduction
 //!
@@ -169,17 +169,18 @@
 //!
 //! # Invariant measures
 //!
-//! [`divergence`] is the rate at which phase volume grows, and [`invariant_measure`] finds a density N with N
-//! dx dy kept, as it is by every system with potential forces, and by some under nonholonomic constraints.
-//! Systems under nonholonomic constraints also have a bracket, the
+//! [`divergence`] is the rate at which phase volume grows, and [`invariant_measure`] finds a density N for
+//! which N dx dy is invariant; one exists for every system with potential forces, and for some under
+//! nonholonomic constraints. Systems under nonholonomic constraints also have a bracket, the
 //! [almost-Poisson](PoissonBracket::almost_poisson) one, and some of Chaplygin's systems have a time in which
-//! they are Lagrangian, given by a [`ReducingMultiplier`]. [`MeasureSearch::of`] gives all results for a
+//! they are Lagrangian, given by a [`ReducingMultiplier`]. [`MeasureSearch::of`] combines all results for a
 //! motion.
 //!
 //! # Around it
 //!
-//! Below: [`pc_mech`] and [`pc_nonholo`], the equations whose motions these are. Above: [pc-print](../pc_print/index.html), which puts it
-//! into words; [pc-cli](../pc_cli/index.html), where it is `pc theory`, `pc linearize` and `pc equilibria`.
+//! Lower layers: [`pc_mech`] and [`pc_nonholo`], the equations of the motions that are analysed. Upper layers:
+//! [pc-print](../pc_print/index.html), which puts the results into words; [pc-cli](../pc_cli/index.html), where they are the output of
+//! `pc theory`, `pc linearize` and `pc equilibria`.
 
 mod brackets;
 mod error;

@@ -21,7 +21,7 @@ pub struct ProposedAction<'g> {
     pub rank: usize,
 }
 
-/// The value that a remainder has at a point.
+/// The value of a remainder at a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Residual {
     /// Names and values of its symbols.
@@ -31,8 +31,8 @@ pub struct Residual {
 }
 
 impl<'g> ProposedAction<'g> {
-    /// The verdict on S = `action`, a function of (t, x) and of `constants`: by cancellation of terms, and by
-    /// numbers `near` a point where it is defined.
+    /// The verdict on S = `action`, a function of (t, x) and of `constants`: from the cancellation of terms,
+    /// and from numerical values `near` a point where S is defined.
     ///
     /// # Errors
     /// As for [`hamilton_jacobi`].
@@ -78,7 +78,8 @@ impl<'g> ProposedAction<'g> {
     }
 }
 
-/// The point, the centre or one near it, where the sum of two terms is largest relative to them.
+/// The residual at the point, the centre or one near it, where the sum of two terms is largest relative to
+/// their sizes.
 fn largest<'g>(graph: &'g Graph, terms: [Expr<'g>; 2], near: &Neighbourhood<'g>) -> Option<Residual> {
     let symbols = graph.symbols_of(&terms);
     let centre =

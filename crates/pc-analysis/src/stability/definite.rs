@@ -1,19 +1,20 @@
-//! Is some combination of quadratic forms positive definite?
+//! The search for a positive definite combination of quadratic forms.
 
 use pc_mech::{Matrix, MechError};
 
 use crate::numeric::dense::{norm, symmetric_eigenvalues};
 
-/// Steps of the search for each pair of forms; each reduces the volume by the factor e^(−1/(2K + 2)).
+/// The number of steps of the search for each pair of forms; each step reduces the volume by the factor
+/// e^(−1/(2K + 2)).
 const STEPS: usize = 1000;
 
 /// Numbers c, not all zero, for which W(c) = Σ c_i W_i is positive definite, with a least eigenvalue above
 /// `tolerance` |c|; `None` if there are none.
 ///
-/// The least eigenvalue φ(c) is concave, and vᵀ W_i v with its eigenvector v is a slope of it, since φ(c') ≤
-/// vᵀ W(c') v for all c'. So each step cuts off half of the remaining part of the unit ball (the ellipsoid
-/// method of D. B. Yudin and A. S. Nemirovski), until a c is found or the slope shows that φ nowhere exceeds
-/// the tolerance.
+/// The least eigenvalue φ(c) is concave, and the vᵀ W_i v, where v is its eigenvector, are a slope
+/// (supergradient) of it, since φ(c') ≤ vᵀ W(c') v for all c'. So each step cuts off half of the remaining
+/// part of the unit ball (the ellipsoid method of D. B. Yudin and A. S. Nemirovski), until a c is found or
+/// the slope shows that φ nowhere exceeds the tolerance.
 /// # Errors
 /// [`MatrixError::NoEigenvalues`](pc_mech::MatrixError::NoEigenvalues) if an entry is not finite.
 pub(crate) fn definite_combination(
@@ -49,7 +50,7 @@ pub(crate) fn definite_combination(
     Ok(None)
 }
 
-/// The result for one form or none.
+/// The result if there is one form or none.
 fn single(forms: &[Matrix<f64>], tolerance: f64) -> Result<Option<Vec<f64>>, MechError> {
     for sign in [1.0, -1.0].into_iter().take(2 * forms.len()) {
         if least_eigenvalue(forms, &[sign])?.0 > tolerance {
