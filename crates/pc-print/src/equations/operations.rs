@@ -7,9 +7,9 @@ use serde_json::{Value, json};
 /// The operations of one evaluation of the right-hand side ẋ, η̇.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Operations {
-    /// With parameters as run-time inputs.
+    /// The cost with parameters as run-time inputs.
     pub free: Cost,
-    /// With parameters bound to their numbers.
+    /// The cost with parameters replaced by their numbers.
     pub bound: Cost,
 }
 
@@ -24,7 +24,8 @@ impl Operations {
         Operations::counted(system, system.quasi_velocities(), &rates)
     }
 
-    /// The operations of the canonical equations; if they are not closed, for given quasi-velocities.
+    /// The operations of the canonical equations; if these are not closed, for given values of the
+    /// quasi-velocities.
     ///
     /// # Errors
     /// As [`of`](Operations::of).
@@ -70,7 +71,7 @@ fn rates_of_states<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
 }
 
 impl Operations {
-    /// One line for free and one for bound parameters.
+    /// One line of text for free and one for bound parameters.
     pub fn lines(&self) -> Vec<String> {
         vec![counted("parameters free ", &self.free), counted("parameters bound", &self.bound)]
     }
