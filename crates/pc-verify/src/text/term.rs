@@ -25,9 +25,9 @@ pub(crate) enum Term {
     Resultant(Resultant),
     /// The total time derivative.
     Rate(Box<Term>),
-    /// Terms; those with `true` are subtracted.
+    /// The terms of a sum; those marked `true` are subtracted.
     Sum(Vec<(bool, Term)>),
-    /// Factors; those with `true` are divided by.
+    /// The factors of a product; those marked `true` are divisors.
     Product(Vec<(bool, Term)>),
     Negative(Box<Term>),
     Power(Box<Term>, Box<Term>),
@@ -81,7 +81,7 @@ const FUNCTIONS: [(&str, Function); 19] = [
 ];
 
 impl Term {
-    /// The number of terms in it, itself included.
+    /// The number of terms it contains, including itself.
     pub(crate) fn size(&self) -> usize {
         1 + match self {
             Term::Sum(parts) | Term::Product(parts) => parts.iter().map(|(_, part)| part.size()).sum(),
@@ -104,7 +104,7 @@ impl Term {
         }
     }
 
-    /// Whether it contains velocities; `definitions` says this of the definitions before it, and `None` is
+    /// Whether it contains velocities; `definitions` says this for the definitions before it, and `None` is
     /// returned if it uses a later one.
     pub(crate) fn has_velocities(&self, definitions: &[bool]) -> Option<bool> {
         let any = |terms: &mut dyn Iterator<Item = &Term>| -> Option<bool> {
@@ -129,18 +129,18 @@ impl Term {
     }
 }
 
-/// The meanings of names.
+/// The names of a model, whose positions here are the indices used in terms.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Names {
     pub(crate) coordinates: Vec<String>,
     pub(crate) quasi_velocities: Vec<String>,
-    /// Parameters, then inputs.
+    /// The parameters, followed by the inputs.
     pub(crate) parameters: Vec<String>,
     pub(crate) states: Vec<String>,
     pub(crate) definitions: Vec<String>,
     pub(crate) constraints: Vec<String>,
     pub(crate) bodies: Vec<String>,
-    /// Components of points with their meanings.
+    /// The names of components of points, with the terms they denote.
     pub(crate) points: Vec<(String, Term)>,
 }
 
