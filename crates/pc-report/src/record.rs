@@ -15,7 +15,7 @@ pub enum Kind {
     Outputs,
     /// Derivatives with respect to parameters.
     Derivatives,
-    /// Estimated global errors of the other columns.
+    /// Estimated global errors of other columns.
     Errors,
 }
 
@@ -24,7 +24,7 @@ pub enum Kind {
 pub struct Columns {
     /// Their kind.
     pub kind: Kind,
-    /// Each with its values, one for each time.
+    /// The columns, each with its name and its values, one for each time.
     pub list: Vec<(String, Vec<f64>)>,
 }
 
@@ -33,24 +33,24 @@ pub struct Columns {
 pub struct Samples {
     /// The times of the values.
     pub times: Vec<f64>,
-    /// The values, an entry for each kind present.
+    /// The values, with one entry for each kind that is present.
     pub columns: Vec<Columns>,
 }
 
-/// A motion as far as it was computed.
+/// The data of a motion, as far as it was computed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Record {
-    /// Evenly spaced, like the frames of a moving picture.
+    /// The samples of the table, evenly spaced like the frames of a moving picture.
     pub rows: Samples,
-    /// As dense as smooth curves need, if that is known.
+    /// Samples as dense as smooth curves require, if they are known.
     pub fine: Option<Samples>,
-    /// The summary of the motion, lines with labels; the same on every run.
+    /// The summary of the motion, as lines with labels; it is the same on every run.
     pub summary: Vec<(String, Vec<String>)>,
     /// Whether the energy, the last of the conserved columns, is an integral.
     pub keeps_energy: bool,
     /// The times at which events occurred.
     pub events: Vec<f64>,
-    /// Why there is no motion, or how it ended if it was not completed.
+    /// The reason why there is no motion, or how it ended if it was not completed.
     pub remark: Option<String>,
 }
 
@@ -65,7 +65,7 @@ pub struct UnknownColumn {
 }
 
 impl Samples {
-    /// The values of the column with a name.
+    /// The kind and the values of the column with this name.
     ///
     /// # Errors
     /// [`UnknownColumn`]

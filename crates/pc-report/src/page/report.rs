@@ -15,7 +15,7 @@ use crate::scene::Scene;
 
 /// The width of a line of a formula, in columns.
 const WIDTH: usize = 92;
-/// Texts of more lines are folded until opened.
+/// Texts with more lines than this are folded until they are opened.
 const LONG_TEXT: usize = 40;
 
 /// Everything known about an assembled model, and about its motion if there is one, as one page for a browser. The same
@@ -65,7 +65,7 @@ fn body(parts: &[Part]) -> String {
     format!("<main id=\"main\">\n{}</main>\n", parts.iter().map(Part::section).collect::<String>())
 }
 
-/// Title, description, table of contents.
+/// The head of the page: title, description, table of contents.
 fn head(model: &Model, parts: &[Part]) -> String {
     let heading = &model.document().model;
     let mut head = format!(

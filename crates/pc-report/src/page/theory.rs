@@ -6,10 +6,10 @@ use crate::page::formulas::{formula, source};
 use crate::page::html::text;
 use crate::picture::plane;
 
-/// Formulas of more bytes are left to `pc theory`.
+/// Formulas that take more bytes than this are left to `pc theory`.
 const LONGEST: usize = 60_000;
 
-/// Parts of more bytes are left out too, so that a page stays below a megabyte.
+/// Parts that take more bytes than this are left out too, so that a page stays below a megabyte.
 const LONGEST_PART: usize = 90_000;
 
 /// Each part under a heading.
