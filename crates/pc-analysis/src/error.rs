@@ -17,11 +17,11 @@ pub enum AnalysisError {
     NoSteadyMotion {
         /// √Σ f_i² over the components that are not cyclic.
         residual: f64,
-        /// Number of steps made.
+        /// The number of steps that were made.
         iterations: usize,
         /// Time.
         t: f64,
-        /// Names and values of the state where the residual was least.
+        /// The names and values of the state at which the residual was least.
         state: Vec<(String, f64)>,
     },
     /// Newton's method ended at a state where the rates vanish but have no derivatives, for example at a pole
@@ -43,7 +43,7 @@ pub enum AnalysisError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
-    /// A name that no component of the state has.
+    /// A name was given that no component of the state has.
     #[error("the state has no component `{name}`; it has {}", known.join(", "))]
     UnknownComponent {
         /// The name.
@@ -51,7 +51,7 @@ pub enum AnalysisError {
         /// The names of the components.
         known: Vec<String>,
     },
-    /// A component named as cyclic on which a rate depends.
+    /// A component was named as cyclic, but a rate depends on it.
     #[error("`{coordinate}` is not cyclic: the rate of `{component}` depends on it")]
     NotCyclic {
         /// The component named as cyclic.
@@ -125,14 +125,14 @@ pub enum AnalysisError {
     NoPosition {
         /// |∂S/∂α − β|
         residual: f64,
-        /// Number of steps made.
+        /// The number of steps that were made.
         iterations: usize,
         /// Time.
         t: f64,
-        /// Names and values of the coordinates where the residual was least.
+        /// The names and values of the coordinates at which the residual was least.
         coordinates: Vec<(String, f64)>,
     },
-    /// A function of a symbol that is not a variable here.
+    /// A function contains a symbol that is not a variable here.
     #[error("`{symbol}` stands in {what}, which can contain {}", quoted(known))]
     NotAVariable {
         /// The kind of function.

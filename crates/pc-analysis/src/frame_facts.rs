@@ -14,10 +14,10 @@ pub struct FrameFacts<'g> {
     pub constraints: Option<FrameConstraints>,
 }
 
-/// Whether a quasi-velocity is dπ/dt.
+/// Whether a quasi-velocity is the rate dπ/dt of a function π.
 #[derive(Clone, Debug)]
 pub enum QuasiVelocityKind<'g> {
-    /// It is the rate of this π, or of a π that is not found.
+    /// It is the rate of this π; `None` if π was not found.
     RateOf(Option<Expr<'g>>),
     /// It is not the rate of a function, because of the bracket of this pair.
     RateOfNothing([String; 2]),

@@ -10,7 +10,7 @@ use crate::error::{AnalysisError, shape};
 use crate::numeric::{dense::norm, newton};
 use roots::vanishes;
 
-/// The most steps of Newton's method for one position.
+/// The largest number of steps of Newton's method for one position.
 const MOST_STEPS: usize = 100;
 /// The residual that counts as zero, relative to |∂F/∂x| (1 + |x|).
 const ENOUGH: f64 = 1e-12;
@@ -35,10 +35,10 @@ pub struct CompleteIntegral<'g> {
 ///
 ///   X_0 S + H(t, x, X_s S) = 0
 ///
-/// for S = `action`, a function of t, x and any constants. S is a solution if this [is
-/// zero](Expr::is_zero); then y_s = X_s S satisfies (10) along (11). The constant zero is a proof, since
-/// differences of expressions of equal value are folded to it. Square roots are resolved if the radicand
-/// is linear in some symbol, for example the energy.
+/// for S = `action`, a function of t, x and any constants. S is a solution if this [is zero](Expr::is_zero);
+/// in that case y_s = X_s S satisfies (10) along the motion (11). The constant zero is a proof, since a
+/// difference of expressions of equal value is folded to zero. Square roots are resolved if the radicand is
+/// linear in some symbol, for example the energy.
 ///
 /// # Errors
 /// [`AnalysisError::Forced`] if a generalised force is not zero;

@@ -7,16 +7,16 @@
 //!
 //! # Frames
 //!
-//! [`FrameFacts::of`] says whether each quasi-velocity is dπ/dt, and which constraints hold by the frame alone.
+//! [`FrameFacts::of`] says whether each quasi-velocity is dπ/dt, and which constraints the frame alone imposes.
 //!
 //! # Brackets
 //!
-//! Without forces and in a stationary frame (10) and (11) are ẏ_s = (y_s, H), ẋ_i = (x_i, H) with
+//! Without forces and in a stationary frame, equations (10) and (11) are ẏ_s = (y_s, H), ẋ_i = (x_i, H) with
 //!
 //! (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m (12).
 //!
-//! [`PoissonBracket::new`] is this bracket; for all others [`PoissonBracket::extended`] adds time and its
-//! momentum y_0, with H + y_0 for H. Functions that commute with everything are
+//! [`PoissonBracket::new`] is this bracket; for all other systems [`PoissonBracket::extended`] adds time and
+//! its momentum y_0, with H + y_0 in place of H. Functions that commute with everything are
 //! [Casimirs](PoissonBracket::casimirs). The bracket of two integrals is an integral (Poisson's theorem);
 //! [`PoissonBracket::closure`] adds the new ones.
 //!
@@ -65,10 +65,10 @@
 //! [`System::energy_rate`](pc_mech::System::energy_rate) is dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s.
 //! [`CyclicDisplacement::all`] finds the a_s X_s whose momentum a_s y_s the motion conserves; for η = ẋ they include
 //! the cyclic coordinates. [`Rates`] differentiates along the motion, gives a [verdict](Rates::verdict) on any
-//! function, and [finds](Rates::integrals) integrals of the form of an [`Ansatz`]; these are proved.
+//! function, and [finds](Rates::integrals) integrals that have the form of an [`Ansatz`]; these are proved.
 //! [`Integrals::find`] combines all of these, and Casimirs; [`Integrals::add_polynomials`] adds those of a
-//! [`PolynomialAnsatz`], with parameters in their coefficients. An integral that is linear in the momenta has a
-//! [`NoetherField`].
+//! [`PolynomialAnsatz`], with parameters in their coefficients. An integral that is linear in the momenta belongs to
+//! a [`NoetherField`].
 //!
 //! ```
 //! use pc_analysis::{Conservation, CyclicDisplacement, Rates};
@@ -102,9 +102,9 @@
 //!
 //! # Hamilton–Jacobi
 //!
-//! If X_0 S + H(t, x, X_s S) = 0, then y_s = X_s S satisfies (10) along (11). [`hamilton_jacobi`] substitutes S and
-//! proves the equation, [`ProposedAction::check`] gives a verdict if there is no proof; from a [`CompleteIntegral`]
-//! S(t, x, α) the motions follow by ∂S/∂α_s = β_s (Jacobi).
+//! If X_0 S + H(t, x, X_s S) = 0, then y_s = X_s S satisfies (10) along the motion (11). [`hamilton_jacobi`]
+//! substitutes S and proves the equation, [`ProposedAction::check`] gives a verdict if there is no proof; from a
+//! [`CompleteIntegral`] S(t, x, α) the motions follow by ∂S/∂α_s = β_s (Jacobi).
 //!
 //! ```
 //! use pc_analysis::CompleteIntegral;
@@ -129,7 +129,7 @@
 //! under constant integrals shows stability (Routh; Chetaev's bundle of integrals). Each gives a [`Verdict`], which
 //! may be undecided. [`SteadySearch::near`] finds the steady motion near a start with the same values of the
 //! integrals, and applies both; [`SteadyMotions::search`] finds steady motions from many starts, and the equilibria.
-//! [`Variation`] is a motion with the deviations from it, δ̇ = (∂f/∂y) δ.
+//! A [`Variation`] is a motion together with deviations from it, δ̇ = (∂f/∂y) δ.
 //!
 //! ```
 //! use pc_analysis::{SecondVariation, Spectrum, Verdict, first_approximation};
@@ -172,8 +172,8 @@
 //! [`divergence`] is the rate at which phase volume grows, and [`invariant_measure`] finds a density N for
 //! which N dx dy is invariant; one exists for every system with potential forces, and for some under
 //! nonholonomic constraints. Systems under nonholonomic constraints also have a bracket, the
-//! [almost-Poisson](PoissonBracket::almost_poisson) one, and some of Chaplygin's systems have a time in which
-//! they are Lagrangian, given by a [`ReducingMultiplier`]. [`MeasureSearch::of`] combines all results for a
+//! [almost-Poisson](PoissonBracket::almost_poisson) one, and some of Chaplygin's systems become Lagrangian in
+//! a new time, which is given by a [`ReducingMultiplier`]. [`MeasureSearch::of`] combines all results for a
 //! motion.
 //!
 //! # Around it

@@ -8,7 +8,7 @@
 //!
 //! Read `check`, the properties of a model; `record`, the data of a motion, and `scene`, its drawing; then
 //! [`picture`], curves and eigenvalues for the page and for separate files, and `page`, which puts everything
-//! under headings. Numbers and formulas come from the crates below.
+//! under headings. Numbers and formulas come from the lower layers.
 //!
 //! ```
 //! use pc_model::{Builtin, Model};

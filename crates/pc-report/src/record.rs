@@ -11,7 +11,7 @@ pub enum Kind {
     States,
     /// Integrals, the energy last.
     Conserved,
-    /// Outputs of the model, reactions among them.
+    /// Outputs of the model, including reactions.
     Outputs,
     /// Derivatives with respect to parameters.
     Derivatives,
@@ -54,7 +54,7 @@ pub struct Record {
     pub remark: Option<String>,
 }
 
-/// A column that a motion does not have.
+/// A requested column does not exist.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no column `{name}`; the columns are {}", known.join(", "))]
 pub struct UnknownColumn {

@@ -34,7 +34,7 @@ pub enum SceneShape {
 }
 
 impl SceneShape {
-    /// The number of its values in each frame.
+    /// The number of values that the shape has in each frame.
     pub fn numbers(&self) -> usize {
         match self {
             SceneShape::Point(_) | SceneShape::Trace | SceneShape::Text(_) => 3,
@@ -47,7 +47,7 @@ impl SceneShape {
         }
     }
 
-    /// Its name in the script, and its text.
+    /// The name of the shape in the script, and its text.
     fn word(&self) -> (&'static str, &str) {
         match self {
             SceneShape::Point(label) => ("point", label.as_deref().unwrap_or_default()),

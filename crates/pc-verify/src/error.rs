@@ -28,7 +28,7 @@ pub enum VerifyError {
     },
 }
 
-/// A quantity with two values.
+/// A quantity for which the two derivations give different values.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
     "the two derivations disagree: {quantity} of the form {form} is {first:?}, by the second derivation {second:?}, of terms \
@@ -49,7 +49,7 @@ pub struct Disagreement {
     pub size: f64,
     /// Time.
     pub t: f64,
-    /// Coordinates and quasi-velocities.
+    /// The coordinates and quasi-velocities, with their values.
     pub state: Vec<(String, f64)>,
 }
 

@@ -57,8 +57,8 @@ fn time_momentum_symbol<'g>(system: &System<'g>, momenta: &[Expr<'g>]) -> Expr<'
     system.graph().symbol(&name)
 }
 
-/// The brackets of (t, x, y_0, y): (t, y_0) = 1, (x_i, y_s) = b_is, (y_s, y_r) = c_rs^m y_m with r, s from
-/// 0; all others are 0.
+/// The brackets of (t, x, y_0, y): (t, y_0) = 1, (x_i, y_s) = b_is, (y_s, y_r) = c_rs^m y_m with r and s
+/// counted from 0; all others are 0.
 fn extended_tensor<'g>(
     frame: &Frame<'g>,
     structure: &StructureCoefficients<'g>,
@@ -205,8 +205,8 @@ impl<'g> PoissonBracket<'g> {
         check_variables("a function in a Poisson bracket", self.graph, functions, &known)
     }
 
-    /// The first three variables whose brackets do not satisfy Jacobi's identity, with the defect. A defect that is
-    /// not folded to zero counts only if its numerical values show that it is not zero.
+    /// The first three variables whose brackets do not satisfy Jacobi's identity, with the defect; `None` if there
+    /// are none. A defect that is not folded to zero counts only if its numerical values show that it is not zero.
     pub fn jacobi_violation(&self) -> Option<([Expr<'g>; 3], Expr<'g>)> {
         let z = &self.variables;
         let triples = (0..z.len())
@@ -219,7 +219,7 @@ impl<'g> PoissonBracket<'g> {
             .find(|&(_, defect)| !Neighbourhood::anywhere(self.graph, &[defect]).vanishes(self.graph, defect))
     }
 
-    /// The graph of all its expressions.
+    /// The graph that holds all expressions of the bracket.
     pub fn graph(&self) -> &'g Graph {
         self.graph
     }
@@ -246,13 +246,13 @@ impl<'g> PoissonBracket<'g> {
     /// [`closure`](PoissonBracket::closure).
     ///
     /// # Errors
-    /// [`AnalysisError::NotAVariable`] for a function of anything else.
+    /// [`AnalysisError::NotAVariable`] for a function of anything other than variables and constants.
     pub fn of(&self, f: Expr<'g>, g: Expr<'g>) -> Result<Expr<'g>, AnalysisError> {
         self.check(&[f, g])?;
         Ok(self.bracket(f, g))
     }
 
-    /// The rates (f, h) of the functions f, one for each, along the flow of h, ż_i = (z_i, h).
+    /// The rates (f, h) of the functions f along the flow of h, ż_i = (z_i, h), one for each function.
     ///
     /// # Errors
     /// As for [`of`](PoissonBracket::of).
@@ -271,7 +271,7 @@ impl<'g> PoissonBracket<'g> {
         Ok(self.components(h))
     }
 
-    /// (f, (g, h)) + (g, (h, f)) + (h, (f, g)): zero, by Jacobi's identity.
+    /// (f, (g, h)) + (g, (h, f)) + (h, (f, g)), which is zero if Jacobi's identity holds.
     ///
     /// # Errors
     /// As for [`of`](PoissonBracket::of).
@@ -281,7 +281,8 @@ impl<'g> PoissonBracket<'g> {
     }
 
     /// The functions, their brackets, the brackets of these and so on, without those that depend functionally
-    /// on earlier ones; the given functions come first. Brackets of integrals are integrals.
+    /// on earlier ones; the given functions come first. If the given functions are integrals, so are their
+    /// brackets.
     ///
     /// # Errors
     /// As for [`of`](PoissonBracket::of).

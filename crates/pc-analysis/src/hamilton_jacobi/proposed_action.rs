@@ -5,19 +5,19 @@ use pc_mech::{Canonical, Expr, Graph, Identity, Neighbourhood};
 use crate::error::AnalysisError;
 use crate::hamilton_jacobi::{hamilton_jacobi, slopes};
 
-/// The number of points at which the residual is evaluated, to show the largest.
+/// The number of points at which the residual is evaluated in order to show the largest.
 const POINTS: u64 = 16;
 
 /// The verdict on an action S(t, x, α).
 #[derive(Clone, Debug)]
 pub struct ProposedAction<'g> {
-    /// X_0 S + H(t, x, X_s S), zero if that is proved.
+    /// The remainder X_0 S + H(t, x, X_s S), which is zero if that is proved.
     pub remainder: Expr<'g>,
     /// Whether the remainder vanishes, relative to its two terms.
     pub identity: Identity,
     /// A point where it does not vanish, if there is one.
     pub refuted: Option<Residual>,
-    /// The rank of ∂(X_s S)/∂α at almost all points, k if the integral is complete.
+    /// The rank of ∂(X_s S)/∂α at almost all points, which is k if the integral is complete.
     pub rank: usize,
 }
 

@@ -25,7 +25,7 @@ impl<'g> Rates<'g> {
     /// The functions are of (t, x, η) or (t, x, y), and may contain parameters. Each integral is proved: its rate is
     /// folded to zero. Parameters count as unknowns, which the coefficients do not contain:
     /// [bind](Rates::with_parameters_bound) them to search for given values. See
-    /// [`linear_relations`](pc_expr::Graph::linear_relations) for what else may be missed.
+    /// [`linear_relations`](pc_expr::Graph::linear_relations) for other integrals that may be missed.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for a function of something that does not belong to the motion.

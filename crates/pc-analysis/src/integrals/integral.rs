@@ -76,12 +76,12 @@ pub struct Integrals<'g> {
 }
 
 impl<'g> Integrals<'g> {
-    /// All of them, the declared ones first.
+    /// All functions, the declared ones first.
     pub fn list(&self) -> &[Integral<'g>] {
         &self.list
     }
 
-    /// Those that are proved to be conserved, possibly only for the present values of the parameters.
+    /// The functions that are proved to be conserved, possibly only for the present values of the parameters.
     pub fn conserved(&self) -> impl Iterator<Item = &Integral<'g>> {
         self.list.iter().filter(|integral| integral.is_conserved())
     }
@@ -90,7 +90,7 @@ impl<'g> Integrals<'g> {
         self.list.push(integral);
     }
 
-    /// Renames each integral for which `name` gives a name.
+    /// Renames each integral for which `name` returns a name.
     pub fn rename(&mut self, name: impl Fn(&Integral<'g>) -> Option<String>) {
         for integral in &mut self.list {
             if let Some(name) = name(integral) {
@@ -99,8 +99,8 @@ impl<'g> Integrals<'g> {
         }
     }
 
-    /// Drops integrals that were found by an ansatz and are functions of others that are `known` to be constant, such as the
-    /// constraints on positions.
+    /// Drops integrals that were found by an ansatz and are functions of quantities that are `known` to be constant, such as
+    /// the constraints on positions.
     pub fn drop_functions_of(&mut self, system: &System<'g>, known: &[Expr<'g>]) {
         let (graph, state) = (system.graph(), system.state());
         let known: Vec<Vec<Expr<'g>>> = known.iter().map(|&f| graph.gradient(f, &state)).collect();

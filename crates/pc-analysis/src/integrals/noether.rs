@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use pc_algebra::affine;
 use pc_mech::{Canonical, Expr, System};
 
-/// A field X = a_s X_s, a_s functions of (t, x), with momentum a_s y_s, such that the motion conserves a_s
-/// y_s + f(t, x).
+/// A field X = a_s X_s, in which the a_s are functions of (t, x), such that the motion conserves a_s y_s +
+/// f(t, x), where a_s y_s is the momentum of X.
 ///
 /// X is a symmetry of L up to the rate of f. Where it [commutes](NoetherField::commutes) with all operators
 /// it is cyclic in Chetaev's sense: equations (9) in a frame with X among its operators contain d/dt (a_s
@@ -23,8 +23,8 @@ pub struct NoetherField<'g> {
 }
 
 impl<'g> NoetherField<'g> {
-    /// The field of an integral of (t, x, η), if it is linear in the momenta and the equations are
-    /// [closed](Canonical::is_closed).
+    /// The field that belongs to an integral, a function of (t, x, η), if it is linear in the momenta and the
+    /// equations are [closed](Canonical::is_closed).
     ///
     /// ```
     /// use pc_analysis::NoetherField;
@@ -56,7 +56,7 @@ impl<'g> NoetherField<'g> {
     }
 }
 
-/// X_r a_m + a_s c_rs^m = 0 for r = 0..k, m = 1..k, as far as the graph can decide.
+/// Whether X_r a_m + a_s c_rs^m = 0 for r = 0..k, m = 1..k, as far as the graph can decide.
 fn commutes<'g>(system: &System<'g>, a: &[Expr<'g>]) -> bool {
     let (frame, structure, k) = (system.frame(), system.structure(), a.len());
     if structure.operators() != k {

@@ -182,7 +182,7 @@ impl<'g> Integrals<'g> {
     }
 }
 
-/// The functions with unknown coefficients.
+/// The functions that have unknown coefficients in a search.
 struct Span<'g> {
     /// In order of ascending degree in η.
     functions: Vec<Expr<'g>>,

@@ -2,7 +2,7 @@
 
 use pc_mech::{Expr, Graph, Number};
 
-/// A factor of monomials, and its largest power.
+/// A factor of monomials, and the largest power to which it is raised.
 pub(crate) type Generator<'g> = (Expr<'g>, u32);
 
 /// The products of powers of the generators that have a degree in 0..=`degree`, simple ones first.

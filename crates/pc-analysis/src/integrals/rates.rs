@@ -5,7 +5,7 @@ use pc_mech::{Canonical, Equations, Expr, Graph, System};
 
 use crate::error::{AnalysisError, check_variables};
 
-/// The verdict on a function along the motion.
+/// The verdict on whether a function is constant along the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Conservation<'g> {
     /// Its rate vanishes identically: it is an integral.
@@ -112,7 +112,7 @@ impl<'g> Rates<'g> {
         check_variables("a function along the motion", self.graph, functions, &known)
     }
 
-    /// The rate df/dt, an expression in (t, x, η) or (t, x, y).
+    /// The rate df/dt, as an expression in (t, x, η) or (t, x, y).
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for a function of a symbol that does not belong to the motion: it neither
@@ -156,7 +156,7 @@ impl<'g> Rates<'g> {
     }
 
     /// The rate relative to its terms, |df/dt|/Σ|∂f/∂z_i ż_i|, at a point, from 0 to 1: at most rounding
-    /// error if f is an integral. None if all terms vanish, or are not numbers.
+    /// error if f is an integral. `None` if all terms vanish, or if a term is not a number.
     ///
     /// # Errors
     /// As for [`of`](Rates::of).

@@ -75,13 +75,13 @@ impl<'g> Integrals<'g> {
 pub(super) struct Search<'a, 'g> {
     pub(super) graph: &'g Graph,
     equations: &'a Equations<'g>,
-    /// The system with numbers for parameters.
+    /// The system with its parameters replaced by numbers.
     bound: System<'g>,
     pub(super) rates: Rates<'g>,
     near: &'a Neighbourhood<'g>,
     /// (t, x, η, z)
     variables: Vec<Expr<'g>>,
-    /// Whether the brackets are those of all operators, so that the Lagrangian determines the motion.
+    /// Whether the brackets include all operators, so that the Lagrangian determines the motion.
     unconstrained: bool,
 }
 
@@ -177,8 +177,8 @@ impl<'a, 'g> Search<'a, 'g> {
     }
 
     /// The rate of the energy without accelerations: the power of the forces and the explicit time dependence. Under constraints
-    /// that are homogeneous in the velocities, c_0r^m = 0, reactions have no power; whether it equals the `rate` along the
-    /// equations is then checked.
+    /// that are homogeneous in the velocities, c_0r^m = 0, reactions have no power; it is then checked that this rate equals the
+    /// `rate` along the equations.
     fn power(&self, rate: Expr<'g>) -> Option<Expr<'g>> {
         if self.unconstrained {
             return Some(self.system().energy_rate());
@@ -215,7 +215,8 @@ impl<'a, 'g> Search<'a, 'g> {
         (1..).zip(new).map(with_parameters).collect()
     }
 
-    /// The verdict on a function that is proved to be conserved at least for these parameters.
+    /// The verdict on a function that is proved to be conserved at least for the present values of the
+    /// parameters.
     pub(super) fn proved(&self, function: Expr<'g>) -> ConservationVerdict<'g> {
         match self.verdict(function) {
             known @ (ConservationVerdict::Conserved | ConservationVerdict::BetweenJumps) => known,
@@ -284,7 +285,8 @@ impl<'a, 'g> Search<'a, 'g> {
         }
     }
 
-    /// Integrals linear in η with coefficients of low degree in x that are independent of those in the list.
+    /// Adds integrals that are linear in η, with coefficients of low degree in x, and independent of those in
+    /// the list.
     fn add_found(&self, list: &mut Vec<Integral<'g>>) {
         let (n, k) = (self.bound.frame().coordinates().len(), self.bound.quasi_velocities().len());
         let largest = if n <= 4 { 2 } else { 1 };
@@ -314,7 +316,7 @@ impl<'a, 'g> Search<'a, 'g> {
         self.rank(&[known, &[f]].concat()) > self.rank(known)
     }
 
-    /// The number of independent functions.
+    /// The number of independent functions among these.
     fn rank(&self, functions: &[Expr<'g>]) -> usize {
         rank_of_gradients(self.graph, functions, &self.variables)
     }

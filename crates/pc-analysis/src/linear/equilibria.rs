@@ -52,8 +52,8 @@ impl Default for EquilibriumSearch {
 pub struct Equilibria {
     /// The equilibria in ascending order of energy.
     pub list: Vec<FoundEquilibrium>,
-    /// The cyclic coordinates: equilibria remain equilibria whatever their values, which are those of the
-    /// start.
+    /// The cyclic coordinates: equilibria remain equilibria whatever values these have; here they have those
+    /// of the start.
     pub anywhere: Vec<String>,
     /// The coordinates and first-order states that were searched over, with the bounds of the starts.
     pub bounds: Vec<(String, f64, f64)>,
@@ -83,11 +83,12 @@ pub struct FoundEquilibrium {
     reach: f64,
 }
 
-/// If a kernel of the first approximation belongs to an isolated equilibrium, Newton's method ends somewhere within about this
-/// distance of it, relative to 1 + |y|: the rates are below its tolerance there.
+/// If the first approximation has a kernel at an isolated equilibrium, Newton's method ends somewhere within about this
+/// distance of it, relative to 1 + |y|, where the rates are below the tolerance of the method.
 const FLAT: f64 = 0.02;
 
-/// How far from an equilibrium others of its family are looked for, relative to 1 + |y|, and in how many directions.
+/// The distance from an equilibrium, relative to 1 + |y|, at which others of its family are looked for, and the
+/// number of directions.
 const BESIDE: f64 = 0.3;
 const DIRECTIONS: usize = 3;
 
@@ -123,7 +124,7 @@ impl EquilibriumSearch {
     /// may be other equilibria.
     ///
     /// `integrals` are those of the `equations` in independent quasi-velocities, which the energy
-    /// criterion uses; `linearizer` is of these equations, or of those with multipliers.
+    /// criterion uses; `linearizer` is made from these equations, or from those with multipliers.
     ///
     /// # Errors
     /// [`AnalysisError::UnknownComponent`], [`AnalysisError::CyclicBox`] or [`AnalysisError::EmptyBox`] for a
@@ -309,7 +310,7 @@ impl Domain {
         self.distance(a, b) <= SAME
     }
 
-    /// The greatest difference of components modulo periods, relative to 1 + |a|.
+    /// The greatest difference between components of two states modulo their periods, relative to 1 + |a|.
     fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
         let components = a.iter().zip(b).zip(&self.periods).map(|((a, b), period)| {
             let distance = (a - b).abs();

@@ -159,7 +159,7 @@ impl Linearizer {
         }
     }
 
-    /// The cyclic coordinates on whose rates these act.
+    /// The cyclic coordinates whose rates depend on these components.
     fn acted_on(&self, by: &[usize]) -> Vec<usize> {
         let pattern = self.motion.sparsity();
         let acts_on = |i: usize| by.iter().any(|&j| pattern.is_none_or(|all| all.column(j).contains(&i)));
@@ -221,7 +221,8 @@ impl Linearizer {
         })
     }
 
-    /// The equations in the coordinates that are not cyclic, and as many cyclic ones as needed.
+    /// The equations of the second order in the coordinates that are not cyclic and as many cyclic ones as
+    /// are needed.
     fn second_order(
         &self,
         evaluated: &Evaluated,

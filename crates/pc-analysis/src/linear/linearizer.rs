@@ -24,12 +24,14 @@ pub struct Leaf<'g> {
     pub whole: System<'g>,
     /// The f of the conditions f(x) = 0 that constraints imply.
     pub positions: Vec<Expr<'g>>,
-    /// Functions of the coordinates alone that keep their start values, such as the length of a quaternion.
+    /// Functions of the coordinates alone that stay at their initial values, such as the length of a
+    /// quaternion.
     pub kept: Vec<Expr<'g>>,
 }
 
 impl<'g> Leaf<'g> {
-    /// All states of a system without constraints whose coordinates are independent.
+    /// The leaf that consists of all states, for a system without constraints whose coordinates are
+    /// independent.
     pub fn of(system: &System<'g>) -> Leaf<'g> {
         Leaf { whole: system.clone(), positions: Vec::new(), kept: Vec::new() }
     }
@@ -83,14 +85,14 @@ pub struct Linearizer {
     /// b, M, and for each output its derivatives with respect to the state, the accelerations, the reactions
     /// and the inputs.
     parts: Evaluator,
-    /// The reactions in the outputs.
+    /// The reactions that occur in the outputs.
     reactions: Option<Reactions>,
     pub(super) sizes: Sizes,
     /// Whether all functions are known that are constant along the motions in the frame.
     is_leaf_known: bool,
 }
 
-/// The sizes of all parts.
+/// The numbers of components of all parts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sizes {
     pub(super) coordinates: usize,
@@ -281,7 +283,7 @@ impl Linearizer {
         }
     }
 
-    /// Checks that equilibria can be searched for.
+    /// Checks that a search for equilibria is possible.
     ///
     /// # Errors
     /// [`AnalysisError::DependsOnTime`], [`AnalysisError::LeafUnknown`].

@@ -1,4 +1,4 @@
-//! Reactions near a state, from the accelerations there.
+//! Reactions near a state, determined from the accelerations there.
 
 use pc_expr::{Backend, Evaluator, Inputs, Program};
 use pc_mech::{Expr, LeastSquares, Matrix, Multipliers};

@@ -35,7 +35,7 @@ pub enum NoSecondOrder {
     /// The velocities change at the state.
     #[error("the state is not steady")]
     NotSteady,
-    /// The mass matrix is not written out.
+    /// The mass matrix is not written out, since the tree is large.
     #[error("the mass matrix of a large tree is not written out")]
     LargeTree,
     /// The equations depend on more coordinates than there are velocities, as may happen under nonholonomic

@@ -1,10 +1,11 @@
-//! Phase volume: its growth, and the measures that are invariant.
+//! The growth of phase volume, and the measures that are invariant.
 
 use pc_mech::{Expr, Graph, Matrix, Number, System, determinant};
 
 use crate::error::AnalysisError;
 
-/// An invariant measure N dx dy with N = Π ψ_i^c_i, ψ_i functions of (t, x, y) and c_i rational.
+/// An invariant measure N dx dy with N = Π ψ_i^c_i, where the ψ_i are functions of (t, x, y) and the c_i are
+/// rational.
 #[derive(Clone, Debug)]
 pub struct InvariantMeasure<'g> {
     /// The ψ_i with their powers c_i, none of them 0.

@@ -1,4 +1,4 @@
-//! The invariant measure of a motion: Liouville's, or one that is found.
+//! The invariant measure of a motion: Liouville's, or one found by a search.
 
 use pc_mech::{Expr, Graph, Matrix, System};
 
@@ -69,7 +69,7 @@ impl<'g> MeasureSearch<'g> {
     /// `at` has values of time, state and parameters at which N is positive.
     ///
     /// # Errors
-    /// The errors of the equations (9).
+    /// The errors in deriving equations (9).
     ///
     /// ```
     /// use pc_analysis::MeasureSearch;
@@ -231,7 +231,7 @@ fn has_resistance(system: &System<'_>) -> bool {
     (0..k).any(|s| (0..=s).any(|r| !(slopes[s][r] + slopes[r][s]).is_zero()))
 }
 
-/// ∂b_ir/∂x_i + c_rs^s, r = 0..k, which X_r N/N cancels for a density N.
+/// ∂b_ir/∂x_i + c_rs^s for r = 0..k; N is a density if X_r N/N cancels these.
 fn growth<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
     let (graph, frame, structure) = (system.graph(), system.frame(), system.structure());
     let mut traces = vec![Vec::new(); frame.operators() + 1];
@@ -279,7 +279,7 @@ fn found<'g>(system: &System<'g>) -> Result<Option<InvariantMeasure<'g>>, Analys
     }
 }
 
-/// The density without constant factors, positive at the values `at`.
+/// The density without constant factors, with its sign chosen so that it is positive at the values `at`.
 fn positive<'g>(system: &System<'g>, density: Expr<'g>, at: &[(Expr<'g>, f64)]) -> Expr<'g> {
     let graph = system.graph();
     let variables: Vec<Expr<'g>> = [system.frame().time()]

@@ -9,7 +9,7 @@ use crate::measures::invariant_measure::invariant_measure;
 /// A new time with which a Chaplygin system becomes a Lagrangian one.
 #[derive(Clone, Debug)]
 pub struct ReducingMultiplier<'g> {
-    /// N of the new time τ, dτ = N dt: a positive function of the independent coordinates.
+    /// N in dτ = N dt, where τ is the new time: a positive function of the independent coordinates.
     pub multiplier: Expr<'g>,
     /// The system in that time: the independent coordinates, with their rates x_i' with respect to τ as
     /// velocities, and L* = (θ + U)(x, N x').
@@ -28,7 +28,7 @@ impl<'g> ReducingMultiplier<'g> {
     /// exists exactly if there is such a measure [Chaplygin 1911]; otherwise N is given only if the equations
     /// are proved to be the same.
     ///
-    /// None for systems that are not [Chaplygin's](Voronets::is_chaplygin) or depend on time.
+    /// `None` for systems that are not [Chaplygin's](Voronets::is_chaplygin) or depend on time.
     ///
     /// # Errors
     /// [`LagrangianError::NotQuadratic`](pc_mech::LagrangianError::NotQuadratic) if the equations have no closed form.

@@ -21,7 +21,7 @@ pub(crate) fn eigenvalues(matrix: &Matrix<f64>) -> Result<Vec<(f64, f64)>, MechE
 /// An eigenvalue, as a pair of real and imaginary part, with the components of an eigenvector as such pairs.
 pub(crate) type Eigenpair = ((f64, f64), Vec<(f64, f64)>);
 
-/// The eigenvalues of a square matrix with an eigenvector each.
+/// The eigenvalues of a square matrix, each with an eigenvector.
 ///
 /// # Errors
 /// As [`eigenvalues`].

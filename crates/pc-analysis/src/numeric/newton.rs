@@ -8,7 +8,7 @@ use crate::numeric::dense::norm;
 /// The largest number of times that a step is halved before the iteration ends.
 const HALVINGS: usize = 40;
 
-/// The end of an iteration.
+/// The point at which an iteration ends, with the values there.
 #[derive(Clone, Debug)]
 pub(crate) struct Iterate {
     /// z
@@ -17,7 +17,7 @@ pub(crate) struct Iterate {
     pub(crate) values: Vec<f64>,
     /// ∂F/∂z
     pub(crate) slopes: Matrix<f64>,
-    /// Number of steps made.
+    /// The number of steps that were made.
     pub(crate) iterations: usize,
 }
 
@@ -58,8 +58,8 @@ impl Iterate {
     }
 }
 
-/// Reduces |F(z)| from `start` on, until it no longer decreases or `most` steps are made. The caller decides
-/// whether the residual counts as zero.
+/// Reduces |F(z)|, beginning at `start`, until it no longer decreases or `most` steps have been made. The
+/// caller decides whether the residual counts as zero.
 ///
 /// `f` returns F(z) and ∂F/∂z; if it fails after a step, a shorter step is tried.
 ///

@@ -60,7 +60,7 @@ fn single(forms: &[Matrix<f64>], tolerance: f64) -> Result<Option<Vec<f64>>, Mec
     Ok(None)
 }
 
-/// φ(c) with its slope; +∞ on a space of dimension 0.
+/// φ(c) with a slope of it; φ = +∞ on a space of dimension 0.
 fn least_eigenvalue(forms: &[Matrix<f64>], c: &[f64]) -> Result<(f64, Vec<f64>), MechError> {
     let (values, vectors) = symmetric_eigenvalues(&combination(forms, c))?;
     let Some(&least) = values.first() else { return Ok((f64::INFINITY, vec![0.0; c.len()])) };
@@ -87,7 +87,8 @@ mod tests {
         Matrix::from_fn(2, 2, |i, j| entries[2 * i + j])
     }
 
-    /// diag(1, −1) + μ diag(−1, 2) is definite for ½ < μ < 1 only; with the second form diag(−1, 1) for no μ.
+    /// diag(1, −1) + μ diag(−1, 2) is definite only for ½ < μ < 1; with diag(−1, 1) as the second form, it is
+    /// definite for no μ.
     #[test]
     fn a_narrow_range_is_found_and_an_empty_one_refused() {
         let first = form([1.0, 0.0, 0.0, -1.0]);
@@ -98,7 +99,7 @@ mod tests {
         assert_eq!(none, None);
     }
 
-    /// A range of the width 10⁻⁶ between three forms.
+    /// Three forms whose combinations are definite only in a range of width 10⁻⁶.
     #[test]
     fn three_forms_are_combined() {
         let forms = [form([1.0, 0.0, 0.0, 0.0]), form([0.0, 1.0, 1.0, 0.0]), form([-1.0, 0.0, 0.0, 1e-6])];

@@ -1,5 +1,5 @@
-//! Stability by the second variation of the energy under constant integrals (Routh; Chetaev's bundle of
-//! integrals; energy and Casimirs).
+//! Stability as shown by the second variation of the energy under constant integrals (Routh; Chetaev's bundle
+//! of integrals; energy and Casimirs).
 
 use pc_mech::{Equations, Expr, Graph, Matrix, MechError, SingularValues};
 
@@ -22,7 +22,7 @@ pub struct SecondVariation {
     pub eigenvalues: Vec<f64>,
     /// The absolute value up to which an eigenvalue counts as zero.
     pub tolerance: f64,
-    /// [`Stable`](Verdict::Stable) if it is definite, else [`Undecided`](Verdict::Undecided).
+    /// [`Stable`](Verdict::Stable) if it is definite, otherwise [`Undecided`](Verdict::Undecided).
     pub verdict: Verdict,
 }
 
@@ -47,8 +47,9 @@ impl SecondVariation {
     ///
     /// With d(H + λ_j I_j) = 0 there, λ by least squares, a second variation that is definite on the common
     /// kernel of the dI_j proves that the steady motion is stable: H + λ_j I_j ± κ (I_j − I_j(y))² has a
-    /// strict extremum at y for large κ. This does not need independent dI_j. If these are linearly
-    /// dependent, the λ_j are not determined, and a search is made for values for which the form is definite.
+    /// strict extremum at y for large κ. This does not require the dI_j to be independent. If these are
+    /// linearly dependent, the λ_j are not determined, and a search is made for values for which the form is
+    /// definite.
     ///
     /// Stability means stability with respect to the [variables](SecondVariation::variables). Redundant
     /// coordinates are variables: their constraints, such as γ² = 1, must be among the integrals.

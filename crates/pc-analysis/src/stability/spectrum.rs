@@ -92,8 +92,8 @@ impl Spectrum {
         &self.eigenvalues
     }
 
-    /// The numbers of Jordan blocks of the eigenvalue zero of size at least 1, 2, …; their sum is the
-    /// multiplicity of zero, the first the dimension of the kernel.
+    /// The numbers of Jordan blocks of size at least 1, 2, … that the eigenvalue zero has; their sum is the
+    /// multiplicity of zero, and the first is the dimension of the kernel.
     pub fn zero_blocks(&self) -> &[usize] {
         &self.zero_blocks
     }

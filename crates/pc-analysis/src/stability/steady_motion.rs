@@ -35,7 +35,8 @@ pub struct SteadyOptions {
 }
 
 impl Default for SteadyOptions {
-    /// The cyclic coordinates of the equations, no fixed components, 100 steps, a relative residual of 10⁻¹².
+    /// The default options: the cyclic coordinates of the equations, no fixed components, 100 steps, a
+    /// relative residual of 10⁻¹².
     fn default() -> SteadyOptions {
         SteadyOptions { cyclic: None, fixed: Vec::new(), iterations: 100, tolerance: 1e-12 }
     }

@@ -41,7 +41,7 @@ pub struct SteadyMotions {
     pub starts: usize,
 }
 
-/// A steady motion, and whether it belongs to a family.
+/// A steady motion, with the dimension of the family to which it belongs.
 #[derive(Clone, Debug)]
 pub struct FoundSteadyMotion {
     /// The motion.
@@ -143,7 +143,7 @@ struct Found {
 }
 
 impl Found {
-    /// Searches from one guess, and adds a result that is new.
+    /// Searches from one guess, and adds the result if it is new.
     fn look<'g>(
         &mut self,
         seeker: &Seeker<'_, 'g>,
@@ -213,7 +213,8 @@ fn family(steady: &SteadyMotion, surface: &Surface<'_>, kept: &[usize]) -> Optio
     Some(columns - values.rank(ZERO * largest))
 }
 
-/// 2π for the coordinates in which the rates have this period, at the start and near it.
+/// The periods of the components: 2π for coordinates in which the rates have this period, at the start and
+/// near it; none for others.
 pub(crate) fn periods(motion: &mut Motion, t: f64, start: &[f64]) -> Vec<Option<f64>> {
     let beside: Vec<f64> = start.iter().map(|z| z + 0.37 + 0.11 * z.abs()).collect();
     let coordinates = motion.coordinates();

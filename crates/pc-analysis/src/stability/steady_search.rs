@@ -151,7 +151,7 @@ fn moves<'g>(system: &System<'g>, x: Expr<'g>) -> bool {
     x.depends_on(system.frame().time()) || system.signals().iter().any(|&u| x.depends_on(u))
 }
 
-/// The expressions in the rates.
+/// The expressions that occur in the rates.
 fn timed<'g>(equations: &Equations<'g>) -> impl Iterator<Item = Expr<'g>> {
     let all =
         [equations.velocities(), &equations.mass_matrix().nonzero_entries(), equations.right_hand_side()];
@@ -160,7 +160,7 @@ fn timed<'g>(equations: &Equations<'g>) -> impl Iterator<Item = Expr<'g>> {
         .chain(equations.system().states().iter().map(|&(_, rate)| rate).collect::<Vec<_>>())
 }
 
-/// The data that a search shares between its starts.
+/// The data that all starts of a search share.
 pub(crate) struct Seeker<'a, 'g> {
     equations: &'a Equations<'g>,
     bound: Equations<'g>,

@@ -54,7 +54,7 @@ impl Form {
         Form::ALL.into_iter().find(|form| form.name() == name)
     }
 
-    /// Its name on command lines and in Python.
+    /// The name of the form on command lines and in Python.
     pub fn name(self) -> &'static str {
         match self {
             Form::Lagrange => "lagrange",

@@ -65,7 +65,7 @@ impl Operations {
     }
 }
 
-/// ż of the first-order states.
+/// The rates ż of the first-order states.
 fn rates_of_states<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
     system.states().iter().map(|&(_, rate)| rate).collect()
 }
@@ -77,7 +77,7 @@ impl Operations {
     }
 }
 
-/// `what: total (kind count, …)`.
+/// A cost as text: `what`, the total, and the counts of each kind of operation.
 pub fn counted(what: &str, cost: &Cost) -> String {
     let kinds: Vec<String> = cost.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
     match kinds.as_slice() {

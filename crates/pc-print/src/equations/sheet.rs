@@ -33,7 +33,7 @@ pub struct Sheet<'p> {
     pub rates: Vec<(Expr<'p>, Expr<'p>)>,
     /// The brackets that are not zero.
     pub brackets: Brackets<'p>,
-    /// The equations themselves.
+    /// The equations of motion.
     pub balance: Balance<'p>,
     /// Each ż_j with its expression.
     pub states: Vec<(Expr<'p>, Expr<'p>)>,
@@ -43,7 +43,7 @@ pub struct Sheet<'p> {
     pub energy_remark: Option<&'static str>,
     /// Each reaction with its expression.
     pub reactions: Vec<(Expr<'p>, Expr<'p>)>,
-    /// The definitions of the model.
+    /// The definitions that the model makes.
     pub definitions: Vec<Given<'p>>,
 }
 

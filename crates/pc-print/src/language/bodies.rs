@@ -52,7 +52,7 @@ pub(crate) struct TreeOnPage<'p> {
     gravity: [Expr<'p>; 3],
 }
 
-/// A body with its own data.
+/// A body with the data that enter its equations.
 struct BodyOnPage<'p> {
     name: String,
     parent: String,
@@ -110,7 +110,7 @@ fn vanishes(vector: &[Expr<'_>; 3]) -> bool {
     vector.iter().all(|component| component.is_zero())
 }
 
-/// As text; `heading` is the title with the name of the form.
+/// The equations as text; `heading` is the title with the name of the form.
 pub(crate) fn text(heading: &str, tree: &TreeOnPage<'_>, operations: &Operations, layout: &Layout) -> String {
     let mut page = crate::language::text::underlined(heading);
     page +=

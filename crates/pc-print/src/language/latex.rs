@@ -55,7 +55,7 @@ pub(crate) fn displays<'a, 'p>(
     parts.with_names().map(display).collect()
 }
 
-/// The environment around some lines.
+/// Puts some lines into an environment that aligns them.
 pub(crate) fn aligned(lines: &[String]) -> String {
     format!("\\begin{{align*}}\n{}\n\\end{{align*}}", lines.join(" \\\\\n"))
 }
@@ -221,7 +221,7 @@ impl<'p> Latex<'_, 'p> {
     }
 }
 
-/// Words within a formula of LaTeX.
+/// Words escaped for use within a formula of LaTeX.
 pub(crate) fn in_text(words: &str) -> String {
     let mut text = String::with_capacity(words.len());
     for c in words.chars() {

@@ -41,7 +41,7 @@ pub(crate) fn escaped(text: &str) -> String {
     safe
 }
 
-/// A row in brackets.
+/// A row enclosed in brackets.
 pub(crate) fn bracketed(row: &str) -> String {
     format!("<mrow><mo>(</mo>{row}<mo>)</mo></mrow>")
 }

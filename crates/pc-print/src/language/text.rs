@@ -43,7 +43,7 @@ pub(crate) fn page(sheet: &Sheet<'_>, operations: &Operations, layout: &Layout, 
     self::sections(&sections)
 }
 
-/// A heading with a line under it.
+/// A heading, underlined.
 pub(crate) fn underlined(heading: &str) -> String {
     format!("{heading}\n{}\n\n", "=".repeat(columns(heading)))
 }

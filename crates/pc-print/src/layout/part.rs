@@ -54,10 +54,10 @@ impl Heading {
     }
 }
 
-/// A line of a part.
+/// A row of a part.
 #[derive(Clone, Debug)]
 pub(crate) enum Row<'p> {
-    /// `name: left = 0 (kind)`
+    /// A constraint: `name: left = 0 (kind)`.
     Constraint { name: String, left: Expr<'p>, kind: Kind },
     /// left = right
     Equation { left: Expr<'p>, right: Expr<'p> },
@@ -129,7 +129,7 @@ impl<'p> Parts<'p> {
         Parts::of(parts, named)
     }
 
-    /// Parts whose names are given.
+    /// The parts, with given names for their expressions.
     fn of(parts: Vec<Part<'p>>, names: Names<'p>) -> Parts<'p> {
         let starts = parts.iter().scan(0, |next, part| {
             let start = *next;

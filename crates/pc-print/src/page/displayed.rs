@@ -36,7 +36,7 @@ pub struct DisplayedPart {
     pub title: &'static str,
     /// The formulas, if there are any.
     pub display: Option<Display>,
-    /// Notes on them.
+    /// Notes on the formulas.
     pub notes: Vec<String>,
 }
 
@@ -86,7 +86,7 @@ pub struct DisplayedEntry {
 }
 
 /// The data of the derivation: the operators X_s = b_is ∂/∂x_i of the frame and their brackets (5), T, U and
-/// L, forces.
+/// L, and the forces.
 ///
 /// U is the value of L where all quasi-velocities vanish, and T = L − U; if the frame itself moves, L − U is
 /// not just the kinetic energy, and only L is shown. For a large tree of bodies L is longer than a page and

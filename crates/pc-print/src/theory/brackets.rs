@@ -57,7 +57,7 @@ fn is_stationary(system: &System<'_>) -> bool {
         && structure.nonzero().all(|(r, .., c)| r > 0 && !c.depends_on(time))
 }
 
-/// The brackets that are not zero, Jacobi's identity, and the motion they generate.
+/// The section on the brackets that are not zero, Jacobi's identity, and the motion that they generate.
 pub(crate) fn brackets<'g>(ground: &Ground<'_, 'g>, bracket: Option<&PoissonBracket<'g>>) -> Section<'g> {
     let is_poisson = ground.constrained.is_none();
     let section = |entries| Section {
@@ -76,7 +76,7 @@ pub(crate) fn brackets<'g>(ground: &Ground<'_, 'g>, bracket: Option<&PoissonBrac
     section(entries)
 }
 
-/// (z_i, z_j) = … for i < j, if it is not zero.
+/// The formulas (z_i, z_j) = … for i < j, except those that are zero.
 fn nonzero<'g>(bracket: &PoissonBracket<'g>) -> Vec<Entry<'g>> {
     let (z, tensor) = (bracket.variables(), bracket.tensor());
     let pairs = (0..z.len()).flat_map(|i| (i + 1..z.len()).map(move |j| (i, j)));
@@ -129,7 +129,7 @@ fn generated(ground: &Ground<'_, '_>, bracket: &PoissonBracket<'_>) -> String {
     format!("x' = (x, {hamiltonian}), y' = (y, {hamiltonian}){forces}{of_time}")
 }
 
-/// The Casimirs of the bracket.
+/// The section on the Casimirs of the bracket.
 pub(crate) fn casimirs<'g>(
     ground: &Ground<'_, 'g>,
     bracket: Option<&PoissonBracket<'g>>,
@@ -140,8 +140,8 @@ pub(crate) fn casimirs<'g>(
     section(bracket.map_or_else(Vec::new, |bracket| casimir_entries(bracket, canonical, degree)))
 }
 
-/// Casimirs that are polynomials up to a degree, or have sines and cosines of coordinates as coefficients
-/// of momenta.
+/// The Casimirs that are polynomials up to a degree, or polynomials in the momenta whose coefficients contain
+/// sines and cosines of coordinates.
 fn casimir_entries<'g>(
     bracket: &PoissonBracket<'g>,
     canonical: Option<&Canonical<'g>>,

@@ -21,7 +21,7 @@ pub(crate) struct Section<'g> {
     pub(crate) key: &'static str,
     /// Its title in print.
     pub(crate) title: &'static str,
-    /// Names first used here, each with its meaning.
+    /// The names first used here, each with its meaning.
     pub(crate) names: Vec<(Side<'g>, Side<'g>)>,
     pub(crate) entries: Vec<Entry<'g>>,
 }
@@ -35,7 +35,7 @@ pub(crate) struct Entry<'g> {
     pub(crate) values: Vec<(String, f64)>,
     /// The verdict, with its subject if that is not the formulas.
     pub(crate) verdict: Option<(Option<&'static str>, Verdict)>,
-    /// Sentences without formulas.
+    /// Sentences that contain no formulas.
     pub(crate) words: Vec<String>,
     /// Real and imaginary parts of the eigenvalues that belong to it.
     pub(crate) spectrum: Vec<(f64, f64)>,
@@ -67,7 +67,7 @@ pub(crate) enum Verdict {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Side<'g> {
     pub(crate) expression: Option<Expr<'g>>,
-    /// Text as in a book.
+    /// Text as a book prints it.
     pub(crate) book: String,
     pub(crate) latex: String,
     /// Text in the expression language, if possible.
@@ -163,7 +163,7 @@ impl<'g> Entry<'g> {
         Entry { formulas: vec![(left, right)], ..Entry::default() }
     }
 
-    /// Words without formulas.
+    /// An entry of words without formulas.
     pub(crate) fn words(words: impl Into<String>) -> Entry<'g> {
         Entry { words: vec![words.into()], ..Entry::default() }
     }

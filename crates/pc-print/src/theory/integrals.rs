@@ -67,7 +67,8 @@ fn say_what_jumps<'g>(integrals: &mut Integrals<'g>, assembly: &Assembly<'g>) {
     integrals.jump(&assembly.system, assembly.events.iter().map(|event| event.resets.as_slice()), projected);
 }
 
-/// The energy of all velocities, which a run observes, in terms of the independent ones of the equations.
+/// The energy formed with all velocities, which a run observes, in terms of the independent velocities of the
+/// equations.
 fn energy_of_all<'g>(assembly: &Assembly<'g>, equations: &Equations<'g>) -> Option<Expr<'g>> {
     let (all, free) = (assembly.system.quasi_velocities(), equations.system().quasi_velocities());
     let values = assembly.quasi_velocities_of(free).ok()?;
@@ -76,7 +77,7 @@ fn energy_of_all<'g>(assembly: &Assembly<'g>, equations: &Equations<'g>) -> Opti
     Some(graph.substitute(&[assembly.system.energy()], &known)[0])
 }
 
-/// The integrals of the theory, those of the ansatz at the end, with the extent of its search.
+/// The integrals that the theory lists, those found by the ansatz at the end, and the extent of the search.
 pub(crate) fn found<'g>(
     ground: &Ground<'_, 'g>,
     model: &Model,
@@ -94,7 +95,7 @@ pub(crate) fn found<'g>(
     Ok((integrals, made))
 }
 
-/// Each with its verdict.
+/// The section on the integrals, each with its verdict.
 pub(crate) fn section<'g>(
     ground: &Ground<'_, 'g>,
     (integrals, made): &(Integrals<'g>, AnsatzSearch),

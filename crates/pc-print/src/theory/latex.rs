@@ -55,7 +55,7 @@ fn lines(entry: &Entry<'_>) -> Vec<String> {
     lines
 }
 
-/// Left = right, on as many lines as needed, followed by `end`.
+/// The formula `left = right` on as many lines as needed, followed by `end`.
 fn formula(left: &str, right: &str, end: &str) -> Vec<String> {
     let parts = folded_outside(right, WIDTH);
     let line = |(j, part): (usize, &String)| {
@@ -65,7 +65,7 @@ fn formula(left: &str, right: &str, end: &str) -> Vec<String> {
     parts.iter().enumerate().map(line).collect()
 }
 
-/// A name of the model as a symbol.
+/// A name of the model, written as a symbol.
 fn latex_name(name: &str) -> String {
     pc_mech::Graph::new().symbol(name).display(pc_mech::Style::Latex)
 }

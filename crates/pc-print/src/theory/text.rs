@@ -66,7 +66,7 @@ fn lines(entry: &Entry<'_>) -> Vec<String> {
     all
 }
 
-/// Words on lines of at most `width` characters.
+/// The words, divided into lines of at most `width` characters.
 fn in_lines(words: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in words.split(' ') {

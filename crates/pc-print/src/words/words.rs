@@ -2,7 +2,7 @@
 
 use crate::words::lines::columns;
 
-/// A number in at most `digits` significant digits, without needless zeros.
+/// A number in at most `digits` significant digits, without superfluous zeros.
 pub fn short(value: f64, digits: usize) -> String {
     let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
     let size = rounded.abs();

@@ -243,7 +243,8 @@ impl<'g> Check<'g> {
     }
 }
 
-/// The algebra of the operators in words, for the present values of the parameters if it depends on them.
+/// The algebra of the operators in words; if it depends on the parameters, it is that for their present
+/// values.
 fn algebra(system: &System<'_>) -> String {
     let (always, bound) = (system.structure(), system.with_parameters_bound());
     match bound.structure().are_constant() && !always.are_constant() {
@@ -286,7 +287,7 @@ fn steady_motion<'g>(
     SteadySearch::near(equations, &mut independent, at, integrals, &assembly.held_positions())
 }
 
-/// The constraints, dropped ones last, each with its kind.
+/// The constraints, each with its kind; those that were dropped come last.
 fn constraints(assembly: &Assembly<'_>) -> Vec<(String, String)> {
     let classified = assembly.constraints.classified().iter();
     let binding =

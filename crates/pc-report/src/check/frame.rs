@@ -82,7 +82,7 @@ pub(super) fn algebra(structure: &StructureCoefficients<'_>, constant: &str) -> 
     format!("{constant}, not one of the catalogue{facts}")
 }
 
-/// The kind of the algebra, its rank and its index.
+/// The kind of an algebra, its rank and its index, in words.
 fn facts(algebra: &LieAlgebra) -> Result<String, AlgebraError> {
     let kind = if algebra.is_abelian() {
         "commutative except for time"

@@ -13,7 +13,7 @@ const DISTANCE: f64 = 4.0;
 /// The length, relative to the size of the scene, that counts as zero.
 const NOTHING: f64 = 1e-6;
 
-/// A point on the drawing.
+/// A point of space as it is seen on the drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Seen {
     /// Its position, with y pointing down.
@@ -84,7 +84,7 @@ impl Bounds {
     }
 }
 
-/// The extent of a shape about its first point.
+/// The extent of a shape around its first point.
 fn reach(shape: &SceneShape, numbers: &[f32]) -> f64 {
     let reach = match shape {
         SceneShape::Disc => f64::from(numbers[6]).abs(),

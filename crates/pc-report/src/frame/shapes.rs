@@ -123,7 +123,7 @@ fn turned(at: [f64; 3], rotation: &[f32], v: [f64; 3]) -> [f64; 3] {
     })
 }
 
-/// A zigzag line between two points.
+/// The points of a zigzag line between two points in space.
 fn windings(camera: &Camera, from: [f64; 3], to: [f64; 3]) -> Vec<[f64; 2]> {
     let [start, end] = [camera.project(from).at, camera.project(to).at];
     let way = [end[0] - start[0], end[1] - start[1]];

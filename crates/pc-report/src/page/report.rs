@@ -18,8 +18,8 @@ const WIDTH: usize = 92;
 /// Texts with more lines than this are folded until they are opened.
 const LONG_TEXT: usize = 40;
 
-/// Everything known about an assembled model, and about its motion if there is one, as one page for a browser. The same
-/// model gives the same bytes.
+/// Everything that is known about an assembled model, and about its motion if there is one, as one page for a browser.
+/// The same model always results in the same bytes.
 ///
 /// # Errors
 /// [`ReportError`] if the equations cannot be derived, or a second derivation disagrees with the first.
@@ -83,7 +83,7 @@ fn head(model: &Model, parts: &[Part]) -> String {
     head + &format!("</header>\n<nav aria-label=\"Contents\">\n<ol>\n{entries}</ol>\n</nav>\n")
 }
 
-/// The text as it was read, with the present values of parameters.
+/// The text of the model as it was read, with the present values of the parameters.
 fn written(model: &Model) -> String {
     let source = model.document().source.text();
     let values: Vec<(String, Vec<String>)> =

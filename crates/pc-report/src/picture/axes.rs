@@ -50,7 +50,7 @@ impl Axis {
         (first..=last).map(|n| n as f64 * step).collect()
     }
 
-    /// About `count` values with their labels.
+    /// About `count` values within the axis, with their labels.
     pub(crate) fn labels(&self, scale: Scale, count: usize) -> Vec<(f64, String)> {
         match scale {
             Scale::Linear => {

@@ -7,7 +7,7 @@ use crate::picture::simplify::simplified;
 
 /// The largest number of events that are marked.
 const MOST_EVENTS: usize = 60;
-/// The width of the scale of colours beside cells, with its numbers.
+/// The width of the scale of colours beside cells, including its numbers.
 const LEGEND: f64 = 96.0;
 /// The colours of values, the lowest first [Smith, van der Walt 2015].
 const COLOURS: [[u8; 3]; 9] = [

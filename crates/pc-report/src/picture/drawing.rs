@@ -1,6 +1,6 @@
 //! The elements of a drawing: lines, texts and areas.
 
-/// A drawing in points, x to the right and y down, in the order in which it is painted.
+/// A drawing whose lengths are in points, with x pointing to the right and y down.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drawing {
     /// Its width.
@@ -37,7 +37,7 @@ pub enum Shape {
         /// Its colour.
         ink: Ink,
     },
-    /// A line of text.
+    /// Text on one line.
     Text {
         /// The position of its beginning, its middle, or its end, on its base line.
         at: [f64; 2],
@@ -75,7 +75,7 @@ pub enum Ink {
     Axis,
     /// Lines through round numbers.
     Grid,
-    /// The time of an event.
+    /// Lines at the times of events.
     Event,
     /// The curve with this index.
     Curve(usize),

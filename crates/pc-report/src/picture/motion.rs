@@ -23,11 +23,11 @@ pub struct Wanted {
     pub columns: Vec<String>,
     /// Pairs of columns, the second drawn against the first.
     pub pairs: Vec<(String, String)>,
-    /// Angles that are shown from −π to π.
+    /// Columns with angles that are shown from −π to π.
     pub wrapped: Vec<String>,
 }
 
-/// The title of columns of a kind.
+/// The title of the panels for columns of a kind.
 pub(crate) fn title(kind: Kind) -> &'static str {
     match kind {
         Kind::Coordinates => "Coordinates",
@@ -99,7 +99,7 @@ fn chosen(record: &Record, samples: &Samples, wanted: &Wanted) -> Result<Vec<Pan
     Ok(panels)
 }
 
-/// The panels of columns of one kind: integrals with their drift, others with their values.
+/// The panels of columns of one kind: integrals are shown by their drift, others by their values.
 pub(crate) fn of_kind(record: &Record, columns: &Columns, wrapped: &[String]) -> Vec<Panel> {
     match columns.kind {
         Kind::Conserved => {

@@ -1,6 +1,7 @@
 //! The visible points of a curve.
 
-/// The greatest distance of the curve from the lines between its points, in points of the drawing.
+/// The greatest distance of the curve from the lines between the points that are kept, in points of the
+/// drawing.
 const TOLERANCE: f64 = 0.05;
 /// The width within which only the ends and extremes of a curve are visible.
 const COLUMN: f64 = 1.0;

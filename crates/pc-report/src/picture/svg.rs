@@ -1,4 +1,4 @@
-//! Drawings as SVG: on a page, in its colours, or in a separate file.
+//! Drawings as SVG, either on a page, in the colours of the page, or in a separate file.
 
 use std::fmt::Write as _;
 

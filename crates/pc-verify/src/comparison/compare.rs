@@ -23,14 +23,14 @@ use crate::numbers::sized::Sized;
 const OTHER: f64 = 1e-9;
 
 /// The greatest factor by which rounding errors of the first derivation may exceed those of the second: forms
-/// that are not chosen for accuracy lose up to half of the digits. If values scatter further, they are not
+/// that are not chosen for accuracy lose up to half of the digits. Values that scatter further are not
 /// compared.
 const WORSE: f64 = 1e4;
 
 /// The extent of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Number of states at which the derivations are compared.
+    /// The number of states at which the derivations are compared.
     pub states: usize,
     /// The seed of the random states.
     pub seed: u64,
@@ -66,7 +66,8 @@ pub fn verify(model: &Model, assembly: &Assembly<'_>, options: &Options) -> Resu
     })
 }
 
-/// Compares equations that are integrated, in which reactions are observed, and those that are printed, in which they are not.
+/// Compares the equations that are integrated, which have reactions among their outputs, and those that are printed, which do
+/// not.
 fn compared(
     (observed, assembly): (&Model, &Assembly<'_>),
     plain: &Assembly<'_>,

@@ -19,7 +19,7 @@ pub(crate) struct First<'g> {
     pub(crate) form: String,
     /// The compared quantities with their names.
     pub(crate) wanted: Vec<(String, Quantity)>,
-    /// Their indices among the values of the first derivation.
+    /// The indices of these quantities among the values of the first derivation.
     places: Vec<usize>,
     /// The free quasi-velocities, if their momenta or energies are compared.
     pub(crate) free: Option<Vec<Free>>,
@@ -67,7 +67,7 @@ impl EnergyRate<'_> {
 }
 
 impl<'g> First<'g> {
-    /// The integrated equations.
+    /// The integrated equations, prepared for the comparison.
     pub(crate) fn flow(
         form: &str,
         flow: Flow,
@@ -132,7 +132,7 @@ impl<'g> First<'g> {
         First::comparing(form, candidates, &inputs, free, source, agreement)
     }
 
-    /// The emitted source.
+    /// The emitted source, prepared for the comparison.
     pub(crate) fn emitted(
         assembly: &Assembly<'_>,
         second: &Second,
@@ -180,7 +180,7 @@ impl<'g> First<'g> {
         Ok(First::comparing("emit", candidates, &[], Some(free), source, agreement))
     }
 
-    /// The printed equations of a form.
+    /// The printed equations of a form, prepared for the comparison.
     pub(crate) fn printed(
         form: pc_print::Form,
         assembly: &Assembly<'_>,

@@ -39,13 +39,13 @@ pub(crate) struct Printed<'g> {
     form: Form,
     page: &'g Graph,
     sheet: Sheet<'g>,
-    /// Names of the free quasi-velocities.
+    /// The names of the free quasi-velocities.
     quasi_velocities: Vec<String>,
     /// The left-hand sides of equations and the expressions that they equal, without reactions.
     direct: Vec<(Side, Expr<'g>)>,
     /// The symbols with their meanings.
     inputs: Vec<(Expr<'g>, Input)>,
-    /// The change of quasi-velocities, if they are not those of the model.
+    /// The change of quasi-velocities, if the equations do not use those of the model.
     change: Option<Change<'g>>,
 }
 
@@ -95,7 +95,7 @@ impl Second {
     }
 }
 
-/// The meaning of a symbol.
+/// The meaning of a symbol on the page.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Input {
     Time,

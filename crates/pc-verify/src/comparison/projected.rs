@@ -1,4 +1,4 @@
-//! The equations of large models, along a few virtual velocities drawn at random.
+//! The equations of large models, compared along a few virtual velocities that are drawn at random.
 //!
 //! To evaluate all equations at a state takes all n² second derivatives of L with respect to the velocities.
 //! Along one virtual velocity v that the constraints allow, they reduce to one equation without multipliers,
@@ -41,7 +41,7 @@ type Residual = Sized;
 
 /// The positions of quantities in the state and the observables of the first derivation.
 pub(crate) struct Layout {
-    /// The indices of the columns among the rates.
+    /// The indices, among the rates, of the columns for quasi-velocities.
     columns: Vec<Option<usize>>,
     energy: Option<usize>,
 }
@@ -219,7 +219,7 @@ impl Derivation {
         Ok(all)
     }
 
-    /// The equation along a virtual velocity.
+    /// The residual of the equation along a virtual velocity.
     fn along(
         &self,
         here: &Moving,

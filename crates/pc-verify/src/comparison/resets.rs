@@ -23,7 +23,7 @@ pub struct Jump<'a> {
     pub event: &'a str,
     /// When.
     pub t: f64,
-    /// y⁻, a state of a flow.
+    /// The state y⁻ of the flow before the event.
     pub before: &'a [f64],
     /// y⁺
     pub after: &'a [f64],

@@ -166,7 +166,7 @@ impl Second {
         &self.start
     }
 
-    /// An agreement without compared states.
+    /// An agreement in which no states have been compared yet.
     pub(crate) fn nothing_yet(&self) -> Agreement {
         let mut agreement = Agreement {
             states: 0,
@@ -235,7 +235,8 @@ impl Second {
         observed.or_else(reaction).or_else(resultant)
     }
 
-    /// The approximate number of terms of the text that are evaluated for the equations at one state.
+    /// The approximate number of terms of the text that have to be evaluated to compare the equations at one
+    /// state.
     pub fn cost(&self) -> usize {
         let k = self.start.w.len();
         let evaluations = self.derivation.couplings.pairs() + 4 * k + 4;
@@ -244,7 +245,7 @@ impl Second {
             .saturating_add(k.saturating_pow(3) / PRODUCTS)
     }
 
-    /// The cost along a few virtual velocities.
+    /// The cost of a comparison along a few virtual velocities.
     fn projected_cost(&self) -> usize {
         let k = self.start.w.len();
         // The frame, the definitions of quasi-velocities and the constraints are linearised several times.

@@ -131,7 +131,8 @@ struct Moved<'a> {
 }
 
 impl Moved<'_> {
-    /// The derivative of each quantity by central differences, with its uncertainty; none if they do not determine it.
+    /// The derivative of each quantity by central differences, with its uncertainty; none if differences do not
+    /// determine it.
     fn differences(&self) -> Result<Vec<Option<Sized>>, Irregular> {
         let here = self.at(0.0)?;
         let mut best: Vec<Option<Sized>> = vec![None; here.len()];

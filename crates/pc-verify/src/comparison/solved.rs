@@ -13,7 +13,7 @@ use crate::numbers::rounding::Rounding;
 use crate::numbers::sized::Sized;
 use crate::text::resultant::Resultants;
 
-/// w, ẇ, λ and the reactions on bodies.
+/// The unknowns: w, ẇ, λ and the reactions on bodies.
 #[derive(Clone)]
 pub(crate) struct Solved {
     velocities: Vec<f64>,
@@ -219,7 +219,7 @@ root = "sqrt(1 + λ_k) - 1"
         assert!(near(led[2], size / 2.0, 1e-3), "{led:?}");
     }
 
-    /// A reaction with an error of one part in 1e9 of its terms makes outputs disagree, even its
+    /// If a reaction has an error of one part in 1e9 of its terms, outputs that contain it disagree, even its
     /// square.
     #[test]
     fn an_output_of_a_wrong_reaction_is_found() {

@@ -21,7 +21,7 @@ const STATES: u64 = 4;
 /// A difference of at most this many jumps is attributed to rounding errors.
 const JUMPS: f64 = 4.0;
 
-/// Two derivations near a state at which they differ.
+/// The result of comparing two derivations near a state at which they differ.
 pub(crate) struct Aside {
     /// The sizes of terms whose rounding errors would explain the jumps of the differences.
     pub(crate) noise: Vec<f64>,

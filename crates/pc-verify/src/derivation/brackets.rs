@@ -1,4 +1,4 @@
-//! The structure coefficients, for frames that do not determine them at each point.
+//! The structure coefficients of frames that do not determine them at each point.
 
 use nalgebra::DMatrix;
 

@@ -1,6 +1,6 @@
 //! The equations of motion at one state, by Lagrange's equations with multipliers.
 //!
-//! With velocities w, ẋ = u(t, x, w), b_s = ∂u/∂w_s and constraints φ_α(t, x, w) = 0 the motion is that of
+//! With velocities w, ẋ = u(t, x, w), b_s = ∂u/∂w_s and constraints φ_α(t, x, w) = 0 the motion satisfies
 //!
 //!   D_t p_s − p·δw_s − X_s L − Q_s = λ_α ∂φ_α/∂w_s,   p_s = ∂L/∂w_s,   X_s L = b_is ∂L/∂x_i,
 //!
@@ -46,7 +46,7 @@ pub(crate) struct Derived {
     /// The sizes of the terms of p, ∂²L/∂w∂w w, and of the terms of w when p is solved for it.
     pub(crate) momentum_sizes: Vec<f64>,
     pub(crate) velocity_sizes: Vec<f64>,
-    /// L and its rate.
+    /// The Lagrangian L and its rate.
     pub(crate) lagrangian: f64,
     pub(crate) lagrangian_rate: f64,
     /// The condition number of the equations.

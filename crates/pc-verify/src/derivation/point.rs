@@ -14,7 +14,8 @@ use crate::text::text::{Text, Velocities};
 /// evaluated in order first.
 const DEEP: usize = 64;
 
-/// Time, coordinates and velocities w as numbers, with everything that follows from them.
+/// A point: time, coordinates, velocities w and first-order states as numbers, with everything that follows
+/// from them.
 pub(crate) struct Point<'a, T: Number> {
     text: &'a Text,
     rounding: &'a Rounding,
@@ -31,7 +32,7 @@ pub(crate) struct Point<'a, T: Number> {
     /// The reactions on bodies, if known.
     resultants: Option<Resultants>,
     definitions: Vec<OnceCell<T>>,
-    /// The largest summands of definitions.
+    /// The largest summand of each definition.
     pub(crate) largest: Vec<OnceCell<f64>>,
     /// The number of definitions already evaluated in order.
     tried: Cell<usize>,
@@ -46,7 +47,7 @@ pub(crate) struct Point<'a, T: Number> {
     in_state_rates: Cell<bool>,
 }
 
-/// A point as it moves in time; boxed, since nested points would have infinite types.
+/// A point as it moves in time; it is boxed, since the types of nested points would be infinite.
 trait Moving<T> {
     /// The rate of a term.
     fn rate(&self, term: &Term) -> Result<T, Irregular>;

@@ -11,9 +11,9 @@ pub(crate) enum Quantity {
     Acceleration(usize),
     /// ż_j
     StateRate(usize),
-    /// η_s of the columns: quasi-velocities, or ẋ where none is declared.
+    /// The η_s of a column: a quasi-velocity, or ẋ_s where none is declared.
     Column(usize),
-    /// η̇_s of the columns.
+    /// The η̇_s of a column.
     ColumnRate(usize),
     /// The left-hand side of a constraint, or its rate: 0.
     Zero,
@@ -36,7 +36,7 @@ pub(crate) enum Quantity {
 /// A quasi-velocity that is free, or whose momentum is a component of the state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Free {
-    /// The quasi-velocity of a column.
+    /// The quasi-velocity in this column.
     Column(usize),
     /// The left-hand side of a constraint.
     Constraint(usize),

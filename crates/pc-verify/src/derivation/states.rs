@@ -13,7 +13,7 @@ use crate::text::text::Velocities;
 /// The sizes of the random displacements, used in turn.
 const SCALES: [f64; 4] = [1.0, 0.3, 0.05, 0.002];
 
-/// The number of smaller displacements that are tried if a size does not lead to a state.
+/// The number of smaller displacements that are tried if a displacement of one size does not lead to a state.
 const ATTEMPTS: i32 = 5;
 
 impl Derivation {
@@ -56,7 +56,7 @@ impl Derivation {
         if !is_known(t + step) && is_known(t - step) { -step } else { step }
     }
 
-    /// The velocities at which coordinates change by their own size in a unit of time.
+    /// The velocities with which coordinates change by their own size in a unit of time.
     fn sizes(&self, at: &Place) -> Vec<f64> {
         match self.text.velocities {
             Velocities::Ordinary(_) => {

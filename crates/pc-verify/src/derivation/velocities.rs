@@ -28,7 +28,7 @@ impl Derivation {
         Ok(rows)
     }
 
-    /// The number of quasi-velocities that are columns.
+    /// The number of columns: of declared quasi-velocities, or of coordinates if none is declared.
     pub(crate) fn declared(&self) -> usize {
         match self.text.names.quasi_velocities.len() {
             0 => self.text.coordinates(),
@@ -36,7 +36,7 @@ impl Derivation {
         }
     }
 
-    /// η, or ẋ if none is declared.
+    /// The values of the columns: η, or ẋ if no quasi-velocity is declared.
     pub(crate) fn columns<T: Number>(&self, point: &Point<'_, T>) -> Result<Vec<T>, Irregular> {
         if self.text.names.quasi_velocities.is_empty() {
             return Ok(point.velocities()?.to_vec());

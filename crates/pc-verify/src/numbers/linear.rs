@@ -1,5 +1,6 @@
-//! Dense matrices with pivoting, block by block: n uncoupled coordinates cost n small matrices. The size of an
-//! equation and the units of an unknown do not affect the rank: rows and columns are scaled first.
+//! Dense matrices with pivoting, block by block: n uncoupled coordinates need only n small matrices. The size
+//! of an equation and the units of an unknown do not affect the rank, because rows and columns are scaled
+//! first.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -21,7 +22,7 @@ const NOISE: f64 = 1e-13;
 /// Pivots below this fraction of the largest make equations singular.
 const PIVOT: f64 = 1e-13;
 
-/// The matrix of these rows, of `columns` entries each.
+/// The matrix with these rows, which have `columns` entries each.
 pub(crate) fn matrix(rows: &[Vec<f64>], columns: usize) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j])
 }
@@ -121,7 +122,7 @@ fn weight(largest: f64) -> f64 {
     if power.is_normal() { power } else { 1.0 }
 }
 
-/// The pseudo-inverse, with the rank, block by block.
+/// The pseudo-inverse and the rank, computed block by block.
 fn pseudo_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, usize)> {
     let mut inverse = DMatrix::zeros(a.ncols(), a.nrows());
     if a.is_empty() {
@@ -191,8 +192,8 @@ fn by_singular_values(blocks: &[(Block, DMatrix<f64>)]) -> Option<Vec<(DMatrix<f
     Some(inverses)
 }
 
-/// The indices of rows of `width` entries each that are independent of the preceding ones, by the method of
-/// Gram and Schmidt.
+/// The indices of rows of `width` entries each that are independent of the preceding ones, found by the
+/// method of Gram and Schmidt.
 pub(crate) fn independent_rows(rows: &[Vec<f64>], width: usize) -> Vec<usize> {
     let all = matrix(rows, width);
     let columns = column_weights(&all, &row_weights(&all, &vec![1.0; width]));
@@ -251,7 +252,7 @@ pub(crate) fn solve(a: &DMatrix<f64>, right: &[f64], terms: &[f64]) -> Result<So
     Ok(Solution { values: values.iter().copied().collect(), sizes, inverse, condition })
 }
 
-/// The inverse, block by block, unless a pivot is too small relative to the largest.
+/// The inverse, computed block by block; none if a pivot is too small relative to the largest.
 fn inverse_by_pivots(a: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let mut inverse = DMatrix::zeros(a.nrows(), a.ncols());
     let (mut least, mut largest) = (f64::INFINITY, 0.0f64);

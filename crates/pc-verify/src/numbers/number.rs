@@ -24,7 +24,8 @@ pub(crate) trait Number: DualNum<Primitive = f64> + Copy {
     /// Whether the value and all derivatives vanish.
     fn vanishes(self) -> bool;
 
-    /// x^c for a constant exponent, by products if it is a small integer, so that no power of 0 is 0/0.
+    /// x^c for a constant exponent, computed by products if it is a small integer, so that no power of 0
+    /// becomes 0/0.
     fn power(self, exponent: f64) -> Self;
 
     /// This number with every part moved by one unit in the last place, up or down.
@@ -84,7 +85,7 @@ impl Number for f64 {
     }
 }
 
-/// Another level of nesting. `next` has one more direction; the deepest has none.
+/// Implements a number at another level of nesting. `next` has one more direction; the deepest has none.
 macro_rules! level {
     ($number:ty, $next:ty, $changing:expr, $rate:expr) => {
         impl Number for $number {

@@ -36,7 +36,7 @@ impl Rounding {
         self.state.get().is_none()
     }
 
-    /// The number, moved.
+    /// The number, moved or unchanged.
     pub(crate) fn of(&self, value: f64) -> f64 {
         let Some(state) = self.state.get() else { return value };
         let next = step(state);

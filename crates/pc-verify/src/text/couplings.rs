@@ -1,4 +1,4 @@
-//! Which velocities occur together in a term of the energy.
+//! The pairs of velocities that occur together in a term of the energy.
 //!
 //! If no term contains both w_r and w_s, ∂²L/∂w_r∂w_s vanishes and need not be computed: n uncoupled
 //! coordinates cost n evaluations of L instead of n². An error here would remove an entry of the mass matrix,
@@ -27,7 +27,7 @@ impl Couplings {
         self.0[r].has(s)
     }
 
-    /// The number of pairs r ≤ s.
+    /// The number of coupled pairs r ≤ s.
     pub(crate) fn pairs(&self) -> usize {
         let (both, alone) =
             self.0.iter().enumerate().fold((0, 0), |(both, alone), (r, with)| {

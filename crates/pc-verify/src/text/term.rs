@@ -21,9 +21,9 @@ pub(crate) enum Term {
     Definition(usize),
     /// λ_α
     Reaction(usize),
-    /// A reaction on a body.
+    /// A component of a reaction on a body.
     Resultant(Resultant),
-    /// The total time derivative.
+    /// The total time derivative of a term.
     Rate(Box<Term>),
     /// The terms of a sum; those marked `true` are subtracted.
     Sum(Vec<(bool, Term)>),
@@ -145,7 +145,7 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    /// The tree with its names resolved.
+    /// The term that a syntax tree denotes, with its names resolved.
     pub(crate) fn resolve(&self, tree: &Ast) -> Result<Term, Unable> {
         let boxed = |tree: &Ast| self.resolve(tree).map(Box::new);
         let all = |trees: &[Ast]| trees.iter().map(|tree| self.resolve(tree)).collect::<Result<Vec<_>, _>>();
@@ -176,12 +176,12 @@ impl Names {
         })
     }
 
-    /// The coordinate of that name.
+    /// The coordinate with this name.
     pub(crate) fn coordinate(&self, name: &str) -> Result<Term, Unable> {
         place(&self.coordinates, name).map(Term::Coordinate).ok_or_else(|| unknown(name))
     }
 
-    /// The quasi-velocity of that name.
+    /// The quasi-velocity with this name.
     pub(crate) fn quasi_velocity(&self, name: &str) -> Result<Term, Unable> {
         place(&self.quasi_velocities, name).map(Term::QuasiVelocity).ok_or_else(|| unknown(name))
     }

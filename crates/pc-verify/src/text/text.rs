@@ -34,7 +34,7 @@ pub(crate) struct Text {
     pub(crate) constraints: Vec<Term>,
     pub(crate) kinetic: Option<Term>,
     pub(crate) potential: Option<Term>,
-    /// The Lagrangian as a whole.
+    /// The Lagrangian, if it is given as a whole.
     pub(crate) lagrangian: Option<Term>,
     pub(crate) dissipation: Option<Term>,
     pub(crate) bodies: Vec<Body>,

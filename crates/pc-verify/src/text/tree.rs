@@ -20,7 +20,7 @@ const OF_BODY: usize = 9 + 9 + 9 + 3;
 /// The number of definitions of a point.
 const OF_POINT: usize = 3;
 
-/// The order of the definitions of bodies and points.
+/// The bodies on joints of a document, with the order of the definitions.
 pub(crate) struct Tree<'a> {
     document: &'a Document,
     /// The definitions of the text, constant ones first, and the number of constant ones.
@@ -202,7 +202,7 @@ fn place_of(document: &Document, body: Option<&str>) -> Option<usize> {
     body.and_then(|name| document.tree.iter().position(|body| body.name.text == name))
 }
 
-/// The movement of a joint, in its own axes: first the slide, then the rotation.
+/// The movement that a joint allows, in its own axes: first the slide, then the rotation.
 struct Motion {
     slide: Option<Vec<Term>>,
     turn: Option<Vec<Term>>,
@@ -346,9 +346,9 @@ fn about(axis: &[Term], angle: &Term) -> Vec<Term> {
     unit().into_iter().zip(s).zip(square).map(entry).collect()
 }
 
-/// The sine and cosine of an angle, exact for a number that is a multiple of π/2 up to rounding: the cosine
-/// of the double next to π/2 could be the only term left when others vanish, and would be taken for their
-/// size.
+/// The sine and cosine of an angle. They are exact for a number that is a multiple of π/2 up to rounding:
+/// otherwise the cosine of the double nearest to π/2 could be the only term left when others vanish, and
+/// would be mistaken for their size.
 fn sine_and_cosine(angle: &Term) -> [Term; 2] {
     let quarter = std::f64::consts::FRAC_PI_2;
     if let Some(value) = number(angle) {
