@@ -31,7 +31,7 @@ pub enum AnalysisError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
-    /// Outputs that contain reactions, at a state where the constraints do not determine the reactions.
+    /// Outputs contain reactions at a state where the constraints do not determine the reactions.
     #[error(
         "the constraints are dependent at{}, where they leave the reactions in {} undetermined",
         listed(state).trim_start_matches(','),
@@ -112,7 +112,7 @@ pub enum AnalysisError {
     IncompleteIntegral {
         /// The rank at almost all points.
         rank: usize,
-        /// Number k of quasi-velocities.
+        /// The number k of quasi-velocities.
         size: usize,
     },
     /// Newton's method ended at a position where Jacobi's equations are not satisfied.

@@ -3,7 +3,7 @@
 use pc_algebra::{Holonomy, Integrability};
 use pc_mech::{Expr, Neighbourhood, System};
 
-/// The quasi-velocities that are rates of functions, and the functions that no motion changes.
+/// The quasi-velocities that are rates of functions, and the functions that are constant along every motion.
 #[derive(Clone, Debug)]
 pub struct FrameFacts<'g> {
     /// The kind of each quasi-velocity, if the frame determines it, that is, if rank b = k.

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use crate::record::Record;
 
-/// The largest number of numbers in all frames together: a third of a megabyte.
+/// A limit on the count of numbers in all frames together: a third of a megabyte.
 const MOST_NUMBERS: usize = 60_000;
 
 /// A shape, whose numbers are stored in the frames, shape by shape.
@@ -151,7 +151,7 @@ impl Scene {
         }))
     }
 
-    /// The number of numbers that all shapes have in a frame.
+    /// The count of the numbers that all shapes have in a frame.
     pub fn width(&self) -> usize {
         self.shapes.iter().map(SceneShape::numbers).sum()
     }

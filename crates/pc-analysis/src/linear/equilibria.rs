@@ -237,8 +237,8 @@ impl EquilibriumSearch {
     }
 }
 
-/// A stable sort by an order in which equality up to rounding is not transitive, as the standard library
-/// would require.
+/// A stable sort for an order in which equality holds up to rounding and is not transitive; the standard
+/// library requires a transitive order.
 fn insertion_sorted<T>(list: &mut [T], order: impl Fn(&T, &T) -> std::cmp::Ordering) {
     for i in 1..list.len() {
         let mut j = i;

@@ -18,7 +18,7 @@ use crate::stability::steady_motion::{SteadyOptions, first_approximation};
 pub struct Linearization {
     /// Time.
     pub t: f64,
-    /// The whole state with its names.
+    /// The whole state, with the names of its components.
     pub state: Vec<(String, f64)>,
     /// Whether all rates except those of cyclic coordinates vanish.
     pub is_steady: bool,
@@ -84,7 +84,7 @@ impl Linearizer {
         self.steady_with(t, guess, options, CyclicCoordinates::LeftOut)
     }
 
-    /// As [`steady`](Linearizer::steady), with a choice about the cyclic coordinates.
+    /// As [`steady`](Linearizer::steady), with a choice of the cyclic coordinates that are included.
     ///
     /// # Errors
     /// As there.

@@ -22,7 +22,7 @@ pub struct Leaf<'g> {
     /// The system with all quasi-velocities, including those that constraints make vanish: its frame is
     /// integrable.
     pub whole: System<'g>,
-    /// The f of the conditions f(x) = 0 that constraints imply.
+    /// The functions f in the conditions f(x) = 0 that constraints imply.
     pub positions: Vec<Expr<'g>>,
     /// Functions of the coordinates alone that stay at their initial values, such as the length of a
     /// quaternion.
@@ -88,7 +88,7 @@ pub struct Linearizer {
     /// The reactions that occur in the outputs.
     reactions: Option<Reactions>,
     pub(super) sizes: Sizes,
-    /// Whether all functions are known that are constant along the motions in the frame.
+    /// Whether all functions that are constant along the motions in the frame are known.
     is_leaf_known: bool,
 }
 
@@ -240,7 +240,7 @@ impl Linearizer {
         })
     }
 
-    /// Names of the components of the state.
+    /// The names of the components of the state.
     pub fn names(&self) -> &[String] {
         self.motion.names()
     }

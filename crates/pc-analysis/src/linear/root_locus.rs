@@ -31,7 +31,7 @@ pub struct RootLocus {
     branches: Vec<Vec<Option<Eigenvalue>>>,
 }
 
-/// A number of eigenvalues that differs from the number of branches.
+/// The number of eigenvalues differs from the number of branches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{found} eigenvalues continue {expected} branches")]
 pub struct BranchCount {

@@ -216,7 +216,7 @@ impl Panel {
 /// The range from −π to π, slightly widened.
 const ANGLES: (f64, f64) = (-1.03 * std::f64::consts::PI, 1.03 * std::f64::consts::PI);
 
-/// The number of labels along a length, at least two, if each takes the length `each`.
+/// The number of labels along a length if each takes the length `each`; at least two.
 fn count(length: f64, each: f64) -> usize {
     ((length / each) as usize).max(2)
 }
