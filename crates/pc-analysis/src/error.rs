@@ -7,7 +7,7 @@ use pc_nonholo::NonholoError;
 /// An error of this crate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AnalysisError {
-    /// Newton's method ended where the rates do not vanish.
+    /// Newton's method ended at a state where the rates do not vanish.
     #[error(
         "no steady motion was found near the guess: after {iterations} steps the rates that should vanish have \
          the norm {} at t = {t}{}",
@@ -17,21 +17,21 @@ pub enum AnalysisError {
     NoSteadyMotion {
         /// √Σ f_i² over the components that are not cyclic.
         residual: f64,
-        /// Number of steps made.
+        /// The number of steps that were made.
         iterations: usize,
         /// Time.
         t: f64,
-        /// Names and values of the state where the residual was least.
+        /// The names and values of the state at which the residual was least.
         state: Vec<(String, f64)>,
     },
-    /// Newton's method ended where the rates vanish but have no derivatives: for example at a pole of the
-    /// coordinates or of the frame.
+    /// Newton's method ended at a state where the rates vanish but have no derivatives, for example at a pole
+    /// of the coordinates or of the frame.
     #[error("the rates vanish, but have no derivatives, at{}", listed(state).trim_start_matches(','))]
     NotSmooth {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
-    /// Outputs that contain reactions, at a state where the constraints do not determine the reactions.
+    /// Outputs contain reactions at a state where the constraints do not determine the reactions.
     #[error(
         "the constraints are dependent at{}, where they leave the reactions in {} undetermined",
         listed(state).trim_start_matches(','),
@@ -43,7 +43,7 @@ pub enum AnalysisError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
-    /// A name that no component of the state has.
+    /// A name was given that no component of the state has.
     #[error("the state has no component `{name}`; it has {}", known.join(", "))]
     UnknownComponent {
         /// The name.
@@ -51,7 +51,7 @@ pub enum AnalysisError {
         /// The names of the components.
         known: Vec<String>,
     },
-    /// A component named as cyclic on which a rate depends.
+    /// A component was named as cyclic, but a rate depends on it.
     #[error("`{coordinate}` is not cyclic: the rate of `{component}` depends on it")]
     NotCyclic {
         /// The component named as cyclic.
@@ -62,8 +62,8 @@ pub enum AnalysisError {
     /// A steady motion was requested for equations that depend on time.
     #[error("the equations depend on time explicitly, so that no state is steady")]
     DependsOnTime,
-    /// A steady motion was requested where the coordinates are not independent and their relations are not
-    /// known.
+    /// A steady motion was requested of equations whose coordinates are not independent and satisfy unknown
+    /// relations.
     #[error(
         "the start is not steady, as rates of norm {} show, and the functions of the coordinates that the frame keeps \
          are not known, so that no other state can be reached from it",
@@ -73,13 +73,13 @@ pub enum AnalysisError {
         /// √Σ f_i² over the components that are not cyclic.
         residual: f64,
     },
-    /// A box for a coordinate that equilibria do not depend on.
+    /// A box was given for a coordinate on which equilibria do not depend.
     #[error("`{name}` is cyclic: equilibria exist at any value of it, so it takes no box")]
     CyclicBox {
         /// The coordinate.
         name: String,
     },
-    /// An empty box.
+    /// A box is empty.
     #[error("the box of `{name}` from {} to {} is empty", readable(*low), readable(*high))]
     EmptyBox {
         /// The coordinate.
@@ -110,12 +110,12 @@ pub enum AnalysisError {
     /// A solution of Hamilton–Jacobi's equation with too few constants.
     #[error("the integral is not complete: the matrix ∂(X_s S)/∂α has rank {rank} of {size}")]
     IncompleteIntegral {
-        /// Rank at almost all points.
+        /// The rank at almost all points.
         rank: usize,
-        /// Number k of quasi-velocities.
+        /// The number k of quasi-velocities.
         size: usize,
     },
-    /// Newton's method ended where Jacobi's equations are not satisfied.
+    /// Newton's method ended at a position where Jacobi's equations are not satisfied.
     #[error(
         "∂S/∂α = β has no solution near the guess: after {iterations} steps the norm of the difference is {} at \
          t = {t}{}",
@@ -125,14 +125,14 @@ pub enum AnalysisError {
     NoPosition {
         /// |∂S/∂α − β|
         residual: f64,
-        /// Number of steps made.
+        /// The number of steps that were made.
         iterations: usize,
         /// Time.
         t: f64,
-        /// Names and values of the coordinates where the residual was least.
+        /// The names and values of the coordinates at which the residual was least.
         coordinates: Vec<(String, f64)>,
     },
-    /// A function of a symbol that is not a variable here.
+    /// A function contains a symbol that is not a variable here.
     #[error("`{symbol}` stands in {what}, which can contain {}", quoted(known))]
     NotAVariable {
         /// The kind of function.
@@ -142,7 +142,7 @@ pub enum AnalysisError {
         /// The symbols that the function can contain.
         known: Vec<String>,
     },
-    /// An error of the derivation or of the numbers of a motion.
+    /// An error of the derivation, or of the numerical evaluation of a motion.
     #[error(transparent)]
     Mech(#[from] MechError),
     /// An error of the constraints.

@@ -3,10 +3,10 @@
 use pc_algebra::{Holonomy, Integrability};
 use pc_mech::{Expr, Neighbourhood, System};
 
-/// Quasi-velocities that are rates of functions, and functions that no motion changes.
+/// The quasi-velocities that are rates of functions, and the functions that are constant along every motion.
 #[derive(Clone, Debug)]
 pub struct FrameFacts<'g> {
-    /// The kind of each quasi-velocity, if the frame determines it: rank b = k.
+    /// The kind of each quasi-velocity, if the frame determines it, that is, if rank b = k.
     pub holonomy: Vec<(String, QuasiVelocityKind<'g>)>,
     /// Whether η = ẋ.
     pub lagrangian: bool,
@@ -14,26 +14,26 @@ pub struct FrameFacts<'g> {
     pub constraints: Option<FrameConstraints>,
 }
 
-/// Whether a quasi-velocity is dπ/dt.
+/// Whether a quasi-velocity is the rate dπ/dt of a function π.
 #[derive(Clone, Debug)]
 pub enum QuasiVelocityKind<'g> {
-    /// It is the rate of this π, or of a π that is not found.
+    /// It is the rate of this π; `None` if π was not found.
     RateOf(Option<Expr<'g>>),
     /// It is not the rate of a function, because of the bracket of this pair.
     RateOfNothing([String; 2]),
 }
 
-/// The n − rank b constraints that a frame stands for.
+/// The n − rank b constraints that a frame imposes.
 #[derive(Clone, Debug)]
 pub enum FrameConstraints {
-    /// All can be written f = const.
+    /// All of them can be written in the form f = const.
     Integrable {
         /// Their number.
         count: usize,
         /// Whether the f depend on time.
         of_time: bool,
     },
-    /// Not all can be written so, because of the bracket of this pair.
+    /// Not all of them can be written in this form, because of the bracket of this pair.
     NotIntegrable {
         /// Names of two quasi-velocities, or `t`.
         pair: [String; 2],

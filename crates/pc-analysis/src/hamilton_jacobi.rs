@@ -10,7 +10,7 @@ use crate::error::{AnalysisError, shape};
 use crate::numeric::{dense::norm, newton};
 use roots::vanishes;
 
-/// The most steps of Newton's method for one position.
+/// The largest number of steps of Newton's method for one position.
 const MOST_STEPS: usize = 100;
 /// The residual that counts as zero, relative to |∂F/∂x| (1 + |x|).
 const ENOUGH: f64 = 1e-12;
@@ -27,7 +27,7 @@ pub struct CompleteIntegral<'g> {
     parameters: Vec<f64>,
     conjugates: Vec<Expr<'g>>,
     momenta: Vec<Expr<'g>>,
-    /// ∂S/∂α (k), ∂²S/∂α∂x (k × k, by rows), X_s S (k) as functions of t, x, (p, α).
+    /// ∂S/∂α (k), ∂²S/∂α∂x (k × k, by rows), X_s S (k) in this order, as functions of t, x and (p, α).
     values: Evaluator,
 }
 
@@ -35,10 +35,10 @@ pub struct CompleteIntegral<'g> {
 ///
 ///   X_0 S + H(t, x, X_s S) = 0
 ///
-/// for S = `action`, a function of t, x and any constants. S is a solution if this [is
-/// zero](Expr::is_zero); then y_s = X_s S satisfies (10) along (11). The constant zero is a proof, since
-/// differences of expressions of equal value are folded to it. Square roots are resolved if the radicand
-/// is linear in some symbol, for example the energy.
+/// for S = `action`, a function of t, x and any constants. S is a solution if this [is zero](Expr::is_zero);
+/// in that case y_s = X_s S satisfies (10) along the motion (11). The constant zero is a proof, since a
+/// difference of expressions of equal value is folded to zero. Square roots are resolved if the radicand is
+/// linear in some symbol, for example the energy.
 ///
 /// # Errors
 /// [`AnalysisError::Forced`] if a generalised force is not zero;
@@ -80,10 +80,11 @@ impl<'g> CompleteIntegral<'g> {
     /// The complete integral S = `action` with k constants α of the given names.
     ///
     /// # Errors
-    /// [`AnalysisError::NotAnAction`] if S does not satisfy the [equation](hamilton_jacobi): its left side is not
-    /// folded to zero, and in numbers it is more than rounding; [`AnalysisError::IncompleteIntegral`] if det
-    /// ∂(X_s S)/∂α_r = 0 at almost all points; [`ShapeError`] if there are not k constants and k coordinates;
-    /// [`AnalysisError::Forced`]; [`LagrangianError::NotQuadratic`](pc_mech::LagrangianError::NotQuadratic);
+    /// [`AnalysisError::NotAnAction`] if S does not satisfy the [equation](hamilton_jacobi): its left-hand side
+    /// is not folded to zero, and its numerical value exceeds rounding error;
+    /// [`AnalysisError::IncompleteIntegral`] if det ∂(X_s S)/∂α_r = 0 at almost all points; [`ShapeError`] if
+    /// there are not k constants and k coordinates; [`AnalysisError::Forced`];
+    /// [`LagrangianError::NotQuadratic`](pc_mech::LagrangianError::NotQuadratic);
     /// [`ExprError::UnboundSymbol`](pc_mech::ExprError::UnboundSymbol).
     pub fn new(
         canonical: &Canonical<'g>,
@@ -151,15 +152,16 @@ impl<'g> CompleteIntegral<'g> {
         Ok(values)
     }
 
-    /// The state (x, y) at time t, as that of the [canonical equations](Canonical::compile_for), of the
-    /// motion with the constants α, β: ∂S/∂α_s = β_s is solved for x by Newton's method from `guess`; all
+    /// The state (x, y) at time t of the motion with the constants α, β, in the layout of the [canonical
+    /// equations](Canonical::compile_for): ∂S/∂α_s = β_s is solved for x by Newton's method from `guess`; all
     /// have length k.
     ///
     /// S has several branches if it contains roots or inverse trigonometric functions; the position found
     /// is on the branch of the guess.
     ///
     /// # Errors
-    /// [`AnalysisError::NoPosition`] with the best x found; as [`betas`](CompleteIntegral::betas) at the guess.
+    /// [`AnalysisError::NoPosition`] with the best x found; otherwise as [`betas`](CompleteIntegral::betas) at
+    /// the guess.
     pub fn state(
         &mut self,
         t: f64,

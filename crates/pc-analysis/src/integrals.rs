@@ -1,10 +1,10 @@
 //! Integrals of a motion: rates along it, momenta of cyclic displacements, integrals from an ansatz.
 //!
-//! Equations give rates of functions with verdicts, and integrals that are proved. `rates` differentiates
-//! along the motion, `cyclic_displacements` finds integrals that are momenta, `ansatz` those of a given form,
-//! made of the products of `polynomials`; `integral` is a function with its verdict, `search` combines all of
-//! them with Casimirs, and `polynomial_search` adds integrals of a given ansatz. `noether` finds the field to
-//! which an integral linear in η belongs.
+//! From the equations follow the rates of functions, with verdicts, and integrals that are proved. `rates`
+//! differentiates along the motion, `cyclic_displacements` finds integrals that are momenta, and `ansatz`
+//! finds those of a given form, composed of the products in `polynomials`; `integral` is a function with its
+//! verdict, `search` combines all of these with Casimirs, and `polynomial_search` adds integrals of a given
+//! ansatz. `noether` finds the field to which an integral linear in η belongs.
 
 pub(crate) mod ansatz;
 pub(crate) mod cyclic_displacements;

@@ -1,22 +1,22 @@
 //! Analysis of motions without integrating them: integrals, steady motions, stability, invariant measures.
 //!
 //! Numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994), with its misprints
-//! corrected; conventions are those of [`pc_mech`]. The analysis applies to its [`System`](pc_mech::System), of
-//! its [`Equations`](pc_mech::Equations) (9) and [`Canonical`](pc_mech::Canonical) equations (10), (11), and to
-//! the [`Motion`](pc_mech::Motion) that these are compiled to. Results are proved unless they are marked open.
+//! corrected; the conventions are those of [`pc_mech`]. The analysis applies to its [`System`](pc_mech::System),
+//! to its [`Equations`](pc_mech::Equations) (9) and [`Canonical`](pc_mech::Canonical) equations (10), (11), and to
+//! the [`Motion`](pc_mech::Motion) into which these are compiled. Results are proved unless they are marked open.
 //!
 //! # Frames
 //!
-//! [`FrameFacts::of`] says whether each quasi-velocity is dπ/dt, and which constraints hold by the frame alone.
+//! [`FrameFacts::of`] says whether each quasi-velocity is dπ/dt, and which constraints the frame alone imposes.
 //!
 //! # Brackets
 //!
-//! Without forces and in a stationary frame (10) and (11) are ẏ_s = (y_s, H), ẋ_i = (x_i, H) with
+//! Without forces and in a stationary frame, equations (10) and (11) are ẏ_s = (y_s, H), ẋ_i = (x_i, H) with
 //!
 //! (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m (12).
 //!
-//! [`PoissonBracket::new`] is this bracket; for all others [`PoissonBracket::extended`] adds time and its
-//! momentum y_0, with H + y_0 for H. Functions that commute with everything are
+//! [`PoissonBracket::new`] is this bracket; for all other systems [`PoissonBracket::extended`] adds time and
+//! its momentum y_0, with H + y_0 in place of H. Functions that commute with everything are
 //! [Casimirs](PoissonBracket::casimirs). The bracket of two integrals is an integral (Poisson's theorem);
 //! [`PoissonBracket::closure`] adds the new ones.
 //!
@@ -65,10 +65,10 @@
 //! [`System::energy_rate`](pc_mech::System::energy_rate) is dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s.
 //! [`CyclicDisplacement::all`] finds the a_s X_s whose momentum a_s y_s the motion conserves; for η = ẋ they include
 //! the cyclic coordinates. [`Rates`] differentiates along the motion, gives a [verdict](Rates::verdict) on any
-//! function, and [finds](Rates::integrals) integrals of the form of an [`Ansatz`]; these are proved.
+//! function, and [finds](Rates::integrals) integrals that have the form of an [`Ansatz`]; these are proved.
 //! [`Integrals::find`] combines all of these, and Casimirs; [`Integrals::add_polynomials`] adds those of a
-//! [`PolynomialAnsatz`], with parameters in their coefficients. An integral that is linear in the momenta has a
-//! [`NoetherField`].
+//! [`PolynomialAnsatz`], with parameters in their coefficients. An integral that is linear in the momenta belongs to
+//! a [`NoetherField`].
 //!
 //! ```
 //! use pc_analysis::{Conservation, CyclicDisplacement, Rates};
@@ -102,9 +102,9 @@
 //!
 //! # Hamilton–Jacobi
 //!
-//! If X_0 S + H(t, x, X_s S) = 0, then y_s = X_s S satisfies (10) along (11). [`hamilton_jacobi`] substitutes S and
-//! proves the equation, [`ProposedAction::check`] gives a verdict if there is no proof; from a [`CompleteIntegral`]
-//! S(t, x, α) the motions follow by ∂S/∂α_s = β_s (Jacobi).
+//! If X_0 S + H(t, x, X_s S) = 0, then y_s = X_s S satisfies (10) along the motion (11). [`hamilton_jacobi`]
+//! substitutes S and proves the equation, [`ProposedAction::check`] gives a verdict if there is no proof; from a
+//! [`CompleteIntegral`] S(t, x, α) the motions follow by ∂S/∂α_s = β_s (Jacobi).
 //!
 //! ```
 //! use pc_analysis::CompleteIntegral;
@@ -124,12 +124,12 @@
 //!
 //! # Steady motions and stability
 //!
-//! [`SteadyMotion::near`] finds states where all but the cyclic coordinates rest, with their first approximation. Its
-//! [`Spectrum`] shows instability, or asymptotic stability; the [`SecondVariation`] of the energy under constant
-//! integrals shows stability (Routh; Chetaev's bundle of integrals). Each gives a [`Verdict`], which may be undecided.
-//! [`SteadySearch::near`] finds the steady motion near a start that has the same integrals, and applies both;
-//! [`SteadyMotions::search`] finds those from many starts, and the equilibria. [`Variation`] is a motion with the
-//! deviations from it, δ̇ = (∂f/∂y) δ.
+//! [`SteadyMotion::near`] finds states in which all but the cyclic coordinates are at rest, with their first
+//! approximation. Its [`Spectrum`] shows instability, or asymptotic stability; the [`SecondVariation`] of the energy
+//! under constant integrals shows stability (Routh; Chetaev's bundle of integrals). Each gives a [`Verdict`], which
+//! may be undecided. [`SteadySearch::near`] finds the steady motion near a start with the same values of the
+//! integrals, and applies both; [`SteadyMotions::search`] finds steady motions from many starts, and the equilibria.
+//! A [`Variation`] is a motion together with deviations from it, δ̇ = (∂f/∂y) δ.
 //!
 //! ```
 //! use pc_analysis::{SecondVariation, Spectrum, Verdict, first_approximation};
@@ -157,10 +157,10 @@
 //!
 //! # Linearization
 //!
-//! A [`Linearizer`] gives the matrices of the motions near a state, in independent components of the states
-//! on its [`Leaf`]: a [`Linearization`] with eigenvalues, [modes](Mode) and equations of the [second
-//! order](SecondOrder). A [`RootLocus`] follows eigenvalues over a parameter, an [`EquilibriumSearch`] looks
-//! for equilibria in a box.
+//! A [`Linearizer`] computes the matrices of the motions near a state, in independent components of the
+//! states on its [`Leaf`]: a [`Linearization`] with eigenvalues, [modes](Mode) and equations of the [second
+//! order](SecondOrder). A [`RootLocus`] follows eigenvalues as a parameter varies; an [`EquilibriumSearch`]
+//! looks for equilibria in a box.
 //!
 //! # Reduction
 //!
@@ -169,17 +169,18 @@
 //!
 //! # Invariant measures
 //!
-//! [`divergence`] is the rate at which phase volume grows, and [`invariant_measure`] finds a density N with N
-//! dx dy kept, as it is by every system with potential forces, and by some under nonholonomic constraints.
-//! Systems under nonholonomic constraints also have a bracket, the
-//! [almost-Poisson](PoissonBracket::almost_poisson) one, and some of Chaplygin's systems have a time in which
-//! they are Lagrangian, given by a [`ReducingMultiplier`]. [`MeasureSearch::of`] gives all results for a
+//! [`divergence`] is the rate at which phase volume grows, and [`invariant_measure`] finds a density N for
+//! which N dx dy is invariant; one exists for every system with potential forces, and for some under
+//! nonholonomic constraints. Systems under nonholonomic constraints also have a bracket, the
+//! [almost-Poisson](PoissonBracket::almost_poisson) one, and some of Chaplygin's systems become Lagrangian in
+//! a new time, which is given by a [`ReducingMultiplier`]. [`MeasureSearch::of`] combines all results for a
 //! motion.
 //!
 //! # Around it
 //!
-//! Below: [`pc_mech`] and [`pc_nonholo`], the equations whose motions these are. Above: [pc-print](../pc_print/index.html), which puts it
-//! into words; [pc-cli](../pc_cli/index.html), where it is `pc theory`, `pc linearize` and `pc equilibria`.
+//! Lower layers: [`pc_mech`] and [`pc_nonholo`], the equations of the motions that are analysed. Upper layers:
+//! [pc-print](../pc_print/index.html), which puts the results into words; [pc-cli](../pc_cli/index.html), where they are the output of
+//! `pc theory`, `pc linearize` and `pc equilibria`.
 
 mod brackets;
 mod error;

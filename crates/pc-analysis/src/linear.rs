@@ -1,10 +1,9 @@
-//! The motions near a state, to first order.
+//! The motions near a state, to first order in the deviations from it.
 //!
-//! Equations of motion in independent quasi-velocities, and the [`Leaf`](linearizer::Leaf) on which a motion
-//! stays, give matrices. Read `leaf` first (which coordinates are independent); `linearizer` evaluates the
-//! derivatives (those of reactions with `reactions`), `linearization` combines them; `second_order` writes them as M q̈ + G q̇ + K q = F u and
-//! `modes` finds eigenvectors. `root_locus` follows eigenvalues over a parameter (`assignment` pairs them),
-//! `equilibria` searches a box for equilibria.
+//! The matrices are computed from equations of motion in independent quasi-velocities and the [`Leaf`](linearizer::Leaf) on which a motion
+//! stays. Read `leaf` first, which selects independent coordinates; `linearizer` evaluates the derivatives, those of reactions using
+//! `reactions`, and `linearization` combines them; `second_order` writes them as M q̈ + G q̇ + K q = F u and `modes` finds eigenvectors.
+//! `root_locus` follows eigenvalues as a parameter varies (`assignment` pairs them), `equilibria` searches a box for equilibria.
 
 pub(crate) mod assignment;
 pub(crate) mod equilibria;

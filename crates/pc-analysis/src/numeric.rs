@@ -1,4 +1,4 @@
-//! Eigenvalues and Newton's method, in numbers.
+//! Numerical methods: eigenvalues and Newton's method.
 
 pub(crate) mod dense;
 pub(crate) mod newton;

@@ -1,10 +1,10 @@
 //! Steady motions and their stability.
 //!
-//! Compiled equations and a guess give a steady motion and verdicts on its stability. `steady_motion` finds
-//! it with its first approximation, `spectrum` decides by eigenvalues of the `reachable` directions,
-//! `second_variation` by integrals, for which `definite` finds a definite combination of quadratic forms;
-//! `steady_search` applies all of them to the steady motion near a start, `steady_motions` to those found from
-//! many starts.
+//! From compiled equations and a guess follow a steady motion and verdicts on its stability. `steady_motion`
+//! finds it with its first approximation, `spectrum` decides its stability from eigenvalues in the `reachable`
+//! directions, and `second_variation` from integrals, for which `definite` finds a definite combination of
+//! quadratic forms; `steady_search` applies all of these to the steady motion near a start, `steady_motions`
+//! to those found from many starts.
 
 pub(crate) mod definite;
 mod reachable;

@@ -3,7 +3,7 @@
 use pc_expr::{Failure, SteepFunctions, TimeDependence, VectorField};
 use pc_mech::{EvaluationError, MechError};
 
-/// A motion together with deviations from it in the first approximation:
+/// A motion together with deviations from it, in the first approximation:
 ///
 ///   ẏ = f(t, y),   δ̇_a = (∂f/∂y) δ_a,   a = 1..m.
 ///
@@ -16,7 +16,7 @@ pub struct Variation<F> {
 }
 
 impl<F: VectorField> Variation<F> {
-    /// The motion of `field`, with `deviations` deviations from it.
+    /// The motion of `field` together with `deviations` deviations from it.
     ///
     /// # Errors
     /// [`EvaluationError::NotCompiled`] if the field has no products with its Jacobian, as a
@@ -33,7 +33,7 @@ impl<F: VectorField> Variation<F> {
         }
     }
 
-    /// The field of y alone.
+    /// The field that y alone follows.
     pub fn field(&self) -> &F {
         &self.field
     }
@@ -77,7 +77,8 @@ impl<F: VectorField> VectorField for Variation<F> {
         self.field.steep_functions().map(|steep| steep.in_states_of(self.dim()))
     }
 
-    /// The names of the field, and `δ1 x`, `δ2 x`, … for the deviations of the component `x`.
+    /// The names of the components of the field, and `δ1 x`, `δ2 x`, … for the deviations of the component
+    /// `x`.
     fn component_name(&self, i: usize) -> String {
         let n = self.field.dim().max(1);
         let name = self.field.component_name(i % n);

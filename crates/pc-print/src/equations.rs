@@ -1,7 +1,7 @@
 //! The printed content of the equations.
 //!
-//! A `form` of an assembled model is `derived`, and becomes a `sheet`: kinematics, brackets, equations, energy, with the `operations` that they cost and
-//! the kinds of `constraints`.
+//! The equations of an assembled model are `derived` in a `form` and turned into a `sheet`: kinematics, brackets, equations, energy, with
+//! the `operations` that they cost and the kinds of `constraints`.
 
 pub(crate) mod constraints;
 pub(crate) mod derived;

@@ -1,4 +1,5 @@
-//! Equations in a language: `text`, `latex`, `mathml` and `json`; `bodies` is the page of bodies on joints in the first two.
+//! Equations in several output languages: `text`, `latex`, `mathml` and `json`; `bodies` prints trees of bodies, body by
+//! body.
 
 pub(crate) mod bodies;
 pub(crate) mod json;

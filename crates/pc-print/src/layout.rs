@@ -1,4 +1,4 @@
-//! How a sheet is laid out on a page.
+//! The layout of a sheet on a page.
 //!
 //! A `layout` holds the choices for printing, in a `format`; a `part` of a sheet consists of rows, with names
 //! for long expressions.

@@ -1,15 +1,16 @@
-//! The equations of a model in print: as in a book, in LaTeX for a paper, as JSON for programs.
+//! The equations of a model in print: as text like that of a book, as LaTeX for a paper, as JSON for
+//! programs.
 //!
 //! A [`page`](page()) is the output of `pc derive` and of `pc_system_print` of the C interface. Its parts are also
 //! public: the [`Derived`] equations in each [`Form`], the [`Sheet`] of their printed expressions, and the
 //! [cost](Operations) of a right-hand side. The [`Theory`] is the output of `pc theory` and `pc_system_theory`.
 //!
-//! An [`Assembly`](pc_model::Assembly) becomes text. Read `form` and `derived` first (the equations with
-//! their constraints and reactions); then `sheet`, the expressions to print, and `operations`, their cost;
-//! `part` and `layout`, headings and lines, with `lines` and `constraints`, words and columns, and `visible`,
-//! which makes foreign text harmless; then `text`, `latex` and `json`, the three ways to print, `mathml` with
-//! `displayed`, formulas for a browser, `bodies`, the page of a large tree of bodies, and `page`, which
-//! chooses. `theory` prints the analysis of motions, with `words` for numbers and lists.
+//! This crate turns an [`Assembly`](pc_model::Assembly) into text. Read `form` and `derived` first (the
+//! equations with their constraints and reactions); then `sheet`, the expressions to print, and `operations`,
+//! their cost; `part` and `layout`, headings and lines, with `lines` and `constraints`, words and columns,
+//! and `visible`, which makes foreign text harmless; then `text`, `latex` and `json`, the three ways to
+//! print, `mathml` with `displayed`, formulas for a browser, `bodies`, the page of a large tree of bodies,
+//! and `page`, which chooses. `theory` prints the analysis of motions, with `words` for numbers and lists.
 //!
 //! ```
 //! use pc_mech::Graph;
@@ -26,8 +27,9 @@
 //!
 //! # Around it
 //!
-//! Below: [`pc_model`], whose equations it prints, and [`pc_analysis`], the analysis of motions. Above:
-//! [pc-report](../pc_report/index.html), all of it on one page, and [pc-cli](../pc_cli/index.html).
+//! Lower layers: [`pc_model`], whose equations it prints, and [`pc_analysis`], the analysis of motions.
+//! Upper layers: [pc-report](../pc_report/index.html), which puts all of this on one page, and
+//! [pc-cli](../pc_cli/index.html).
 
 mod equations;
 mod language;

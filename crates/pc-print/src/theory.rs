@@ -1,10 +1,11 @@
 //! The printed analysis of a model's motions.
 //!
-//! An assembled model becomes text. Read `description` first, the content in any format; then `basis`, the
-//! common basis of all parts, and the parts: `brackets`, `integrals`, `measure`, `action`, `steady`, `routh`.
-//! `names` writes the formulas, with names for long expressions; `text`, `latex` and `json` are the three
-//! ways to print, `folded` breaks long formulas into several lines, and `page` combines these.
-//! `bracket_of` is the bracket of two functions, for programs.
+//! An assembled model is turned into text that describes its motions. Read `description` first, the content
+//! in any format; then `basis`, the common basis of all parts, and the parts themselves: `brackets`,
+//! `integrals`, `measure`, `action`, `steady`, `routh`. `names` writes the formulas, with names for long
+//! expressions; `text`, `latex` and `json` are the three ways to print, `folded` breaks long formulas into
+//! several lines, and `page` combines these. `bracket_of` computes the bracket of two functions, for
+//! programs.
 
 pub(crate) mod action;
 pub(crate) mod basis;

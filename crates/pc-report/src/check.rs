@@ -1,8 +1,9 @@
 //! The consistency and the properties of a model.
 //!
-//! A model becomes a [`Check`](check::Check). `frame` describes its frame, `combinations` its constraints,
-//! `integrals` the conserved quantities, `measure` the invariant measure, `steady` the nearest steady motion,
-//! `agreement` the second derivation; `check` combines these, as text or as JSON, `findings` in one row of a table.
+//! The properties of a model are collected in a [`Check`](check::Check). `frame` describes its frame,
+//! `combinations` its constraints, `integrals` the conserved quantities, `measure` the invariant measure, `steady`
+//! the nearest steady motion, `agreement` the second derivation; `check` combines these as text or as JSON,
+//! `findings` as one row of a table.
 
 pub(crate) mod agreement;
 pub(crate) mod check;

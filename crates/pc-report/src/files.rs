@@ -1,7 +1,8 @@
-//! Pictures as files.
+//! Pictures written as files.
 //!
-//! A [`Drawing`](crate::picture::Drawing) becomes a bitmap or a page: `glyphs` are the outlines of the built-in
-//! font, `png`, `gif` and `pdf` write, and `error` lists the errors. SVG does not need this.
+//! A [`Drawing`](crate::picture::Drawing) is turned into a bitmap or a page: `glyphs` has the outlines of the
+//! built-in font, `png`, `gif` and `pdf` write files, and `error` lists the errors. Writing SVG does not need
+//! these modules.
 
 mod error;
 mod gif;

@@ -1,14 +1,14 @@
-//! Everything known about a model, on one page.
+//! Everything that is known about a model, on one page.
 //!
-//! A [`Model`](pc_model::Model) and, if it was integrated, the [`Recording`] of its motion become [one
+//! A [`Model`](pc_model::Model) and, if it was integrated, the [`Recording`] of its motion are turned into [one
 //! page](report()) for a browser: the text of the model, frame and operators, verdicts, equations in every
 //! form that applies, brackets, integrals, steady motions, plots. The page is self-contained and readable
-//! without scripts; where scripts run, it plays the motion ([`animation`] is the player alone). A [`Check`]
-//! is the output of `pc check`, which is also part of the page.
+//! without scripts; where scripts run, it plays the motion ([`animation`] is a page with the player alone). A
+//! [`Check`] is the output of `pc check`, which is also part of the page.
 //!
 //! Read `check`, the properties of a model; `record`, the data of a motion, and `scene`, its drawing; then
-//! [`picture`], curves and eigenvalues, also for separate files, and `page`, which puts everything under
-//! headings. Numbers and formulas come from the crates below.
+//! [`picture`], curves and eigenvalues for the page and for separate files, and `page`, which puts everything
+//! under headings. Numbers and formulas come from the lower layers.
 //!
 //! ```
 //! use pc_model::{Builtin, Model};
@@ -21,8 +21,8 @@
 //!
 //! # Around it
 //!
-//! Below: [`pc_print`], formulas and words, and [`pc_verify`], the second derivation. Above: [pc-cli](../pc_cli/index.html), where it is
-//! `pc report`, `pc animate` and `pc check`.
+//! Lower layers: [`pc_print`], formulas and words, and [`pc_verify`], the second derivation. Upper layers:
+//! [pc-cli](../pc_cli/index.html), where this crate serves `pc report`, `pc animate` and `pc check`.
 
 mod check;
 mod error;

@@ -1,9 +1,9 @@
-//! The page of a browser.
+//! The page for a browser.
 //!
-//! A model becomes a page of parts under headings. `html` escapes text and writes elements, `formulas` shows
-//! displays with their sources, `equations`, `theory` and `motion` with the `player` and the `pairs` of
-//! portraits are the long parts, and `report` combines the parts. The page is XML as well as HTML: every
-//! element is closed.
+//! A model is turned into a page of parts under headings. `html` escapes text and writes elements, `formulas`
+//! shows displays with their sources, `equations`, `theory` and `motion`, with the `player` and the `pairs`
+//! that portraits show, are the long parts, and `report` combines all parts. The page is XML as well as HTML:
+//! every element is closed.
 
 mod equations;
 mod formulas;

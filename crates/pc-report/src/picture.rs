@@ -1,10 +1,11 @@
-//! Pictures: of a motion, of a sweep, of eigenvalues, for a page and for files.
+//! Pictures of a motion, of a sweep and of eigenvalues, for a page and for files.
 //!
-//! A [`Recording`](crate::Recording) becomes [`Panel`]s of curves that one scale shows well, several panels become
-//! a [`Picture`], and that a [`Drawing`]: lines, areas and texts that can be written in any format. Read
-//! `panel`, the contents of common axes; `scales`, which curves share them; `motion`, the panels of a motion;
-//! `axes`, round numbers; `simplify`, the visible points; `chart`, a panel drawn; `drawing` and `svg`, the
-//! shapes and their output; `sheet`, panels under each other; `plane`, eigenvalues.
+//! A [`Record`](crate::Record) is divided into [`Panel`]s, each with curves that one scale shows well;
+//! several panels form a [`Picture`], and this is turned into a [`Drawing`]: lines, areas and texts that can
+//! be written in any format. Read `panel`, the contents of common axes; `scales`, which curves share them;
+//! `motion`, the panels of a motion; `axes`, round numbers; `simplify`, the visible points; `chart`, a panel
+//! drawn; `drawing` and `svg`, the shapes and their output; `sheet`, panels arranged one below the other;
+//! `plane`, eigenvalues.
 
 mod axes;
 pub(crate) mod chart;

@@ -11,11 +11,11 @@ pub enum ColumnKind {
     States,
     /// Integrals, the energy last.
     Conserved,
-    /// Outputs of the model, reactions among them.
+    /// Outputs of the model, including reactions.
     Outputs,
     /// Derivatives with respect to parameters.
     Derivatives,
-    /// Estimated global errors of the other columns.
+    /// Estimated global errors of other columns.
     Errors,
 }
 
@@ -24,7 +24,7 @@ pub enum ColumnKind {
 pub struct Columns {
     /// Their kind.
     pub kind: ColumnKind,
-    /// Each with its values, one for each time.
+    /// The columns, each with its name and its values, one for each time.
     pub list: Vec<(String, Vec<f64>)>,
 }
 
@@ -33,28 +33,28 @@ pub struct Columns {
 pub struct Samples {
     /// The times of the values.
     pub times: Vec<f64>,
-    /// The values, an entry for each kind present.
+    /// The values, with one entry for each kind that is present.
     pub columns: Vec<Columns>,
 }
 
-/// A motion as far as it was computed.
+/// The data of a motion, as far as it was computed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recording {
-    /// Evenly spaced, like the stills of a film.
+    /// The samples of the table, evenly spaced like the stills of a film.
     pub rows: Samples,
-    /// As dense as smooth curves need, if that is known.
+    /// Samples as dense as smooth curves require, if they are known.
     pub fine: Option<Samples>,
-    /// The summary of the motion, lines with labels; the same on every run.
+    /// The summary of the motion, as lines with labels; it is the same on every run.
     pub summary: Vec<(String, Vec<String>)>,
     /// Whether the energy, the last of the conserved columns, is an integral.
     pub keeps_energy: bool,
     /// The times at which events occurred.
     pub events: Vec<f64>,
-    /// Why there is no motion, or how it ended if it was not completed.
+    /// The reason why there is no motion, or how it ended if it was not completed.
     pub remark: Option<String>,
 }
 
-/// A column that a motion does not have.
+/// A requested column does not exist.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no column `{name}`; the columns are {}", known.join(", "))]
 pub struct UnknownColumn {
@@ -65,7 +65,7 @@ pub struct UnknownColumn {
 }
 
 impl Samples {
-    /// The values of the column with a name.
+    /// The kind and the values of the column with this name.
     ///
     /// # Errors
     /// [`UnknownColumn`]

@@ -1,4 +1,4 @@
-//! Shapes with their places along a motion.
+//! Shapes with their positions along a motion.
 
 use pc_expr::{Backend, Evaluator, Inputs, Program};
 use pc_mech::{Expr, MechError};
@@ -7,34 +7,34 @@ use serde_json::{Value, json};
 
 use crate::recording::Recording;
 
-/// The most numbers of all stills together: a third of a megabyte.
+/// A limit on the count of numbers in all stills together: a third of a megabyte.
 const MOST_NUMBERS: usize = 60_000;
 
-/// A shape; its numbers are stored in the stills, shape after shape.
+/// A shape, whose numbers are stored in the stills, shape by shape.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SceneShape {
     /// Three numbers: a dot, with a label.
     Point(Option<String>),
     /// Three numbers for each of this many corners.
     Line(usize),
-    /// Middle, normal, radius.
+    /// Its centre, normal and radius.
     Disc,
-    /// Middle, radius.
+    /// Its centre and radius.
     Sphere,
-    /// Middle, edges, the rows of a rotation.
+    /// Its centre, edge lengths, and the rows of a rotation matrix.
     Box,
-    /// Their common point, the rows of a rotation.
+    /// Their common point and the rows of a rotation matrix.
     Axes,
-    /// The two ends.
+    /// Its two ends.
     Spring,
     /// Three numbers: the point that leaves a trace.
     Trace,
-    /// Three numbers: where the words begin.
+    /// Three numbers: the point at which the words begin.
     Text(String),
 }
 
 impl SceneShape {
-    /// The number of its values in each still.
+    /// The number of values that the shape has in each still.
     pub fn numbers(&self) -> usize {
         match self {
             SceneShape::Point(_) | SceneShape::Trace | SceneShape::Text(_) => 3,
@@ -47,7 +47,7 @@ impl SceneShape {
         }
     }
 
-    /// Its name in the script, and its text.
+    /// The name of the shape in the script, and its text.
     fn word(&self) -> (&'static str, &str) {
         match self {
             SceneShape::Point(label) => ("point", label.as_deref().unwrap_or_default()),
@@ -79,7 +79,7 @@ impl From<Shape<'_>> for SceneShape {
     }
 }
 
-/// The rows that are shown: all, or every n-th and the last one.
+/// The indices of the rows that are shown: all, or every n-th and the last one.
 fn shown(rows: usize, width: usize) -> Vec<usize> {
     let stride = (rows * width).div_ceil(MOST_NUMBERS).max(1);
     let last = rows.saturating_sub(1);
@@ -101,8 +101,8 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// The drawing of a model along a motion; `None` if there is nothing to draw, or its variables were not
-    /// computed.
+    /// The drawing of a model along a motion; `None` if there is nothing to draw, or if variables that it
+    /// needs were not computed.
     ///
     /// # Errors
     /// [`ModelError`] if the shapes cannot be resolved or compiled.
@@ -155,13 +155,13 @@ impl Scene {
         }))
     }
 
-    /// The numbers of all shapes in a still.
+    /// The count of the numbers that all shapes have in a still.
     pub fn width(&self) -> usize {
         self.shapes.iter().map(SceneShape::numbers).sum()
     }
 
-    /// The data for the player: names, then times and numbers in IEEE 754 single precision, least
-    /// significant byte first, in base 64.
+    /// The data for the player: names, then times and numbers in IEEE 754 single precision, least significant
+    /// byte first, encoded in base 64.
     pub(crate) fn data(&self) -> Value {
         let shapes: Vec<Value> = self
             .shapes

@@ -1,8 +1,9 @@
-//! Both derivations, compared.
+//! The comparison of the two derivations.
 //!
-//! The numbers of the `first` and the `second` become `quantities` with their `natural` sizes, including `solved` unknowns, and an `agreement` within
-//! the `tolerance`; large models have `projected` quantities. `compare` compares them at many states, `outlet` before results are returned, `printed`
-//! for printed expressions, `slopes` for derivatives, `resets` for states after events. `unsteady` distinguishes jumps and rounding from errors.
+//! The numbers of the `first` and the `second` derivation are compared as `quantities` with their `natural` sizes, including `solved`
+//! unknowns; the result is an `agreement` within the `tolerance`. Large models are compared by `projected` equations. `compare` compares
+//! at many states, `outlet` before results are returned, `printed` compares printed expressions, `slopes` derivatives, and `resets`
+//! states after events. `unsteady` distinguishes jumps and rounding errors from errors of derivation.
 
 pub(crate) mod agreement;
 pub(crate) mod compare;

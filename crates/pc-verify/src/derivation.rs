@@ -1,9 +1,9 @@
 //! The second derivation at one state.
 //!
-//! Terms are evaluated at a `point`, in the variables of a `place`. Read `derivation` first: the parts that are linear in velocities. From them
-//! follow `velocities`, the `structure` coefficients (`constants` or `brackets`) and `forces` with their `force_function`, and from these the
-//! `equations`, with `resultants`. `here` holds all of it at one place, `quantity` what both derivations have; `states` draws the places, and
-//! `summands` are the sizes of sums.
+//! Terms are evaluated at a `point`, whose variables are those of a `place` (a state). Read `derivation` first: the parts that are linear
+//! in velocities. From these parts follow the `velocities`, the `structure` coefficients (`constants` or `brackets`) and the `forces`
+//! with their `force_function`; from these follow the `equations`, with `resultants`. `here` holds the results at one place, and
+//! `quantity` names the quantities that both derivations have; `states` draws random places, and `summands` computes the sizes of sums.
 
 pub(crate) mod brackets;
 pub(crate) mod constants;

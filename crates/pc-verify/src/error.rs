@@ -1,11 +1,11 @@
-//! The reasons why no agreement is found.
+//! The reasons why no agreement was found.
 
 use std::fmt;
 
 use pc_expr::Spent;
 use pc_model::ModelError;
 
-/// Why a model and its second derivation were not found to agree.
+/// The reason why the two derivations of a model were not found to agree.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum VerifyError {
@@ -15,20 +15,20 @@ pub enum VerifyError {
     /// The first derivation refuses the model.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// The second derivation cannot be made of this model.
+    /// The second derivation of this model cannot be carried out.
     #[error("the second derivation cannot be made: {0}")]
     Unable(#[from] Unable),
-    /// Both derivations were regular at no state.
+    /// There was no state at which both derivations were regular.
     #[error("nothing could be compared: of {tried} states none is regular; {reason}")]
     NothingCompared {
-        /// States tried.
+        /// The number of states tried.
         tried: usize,
-        /// Why the last state was skipped.
+        /// The reason why the last state was skipped.
         reason: String,
     },
 }
 
-/// A quantity with two values.
+/// A quantity for which the two derivations give different values.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
     "the two derivations disagree: {quantity} of the form {form} is {first:?}, by the second derivation {second:?}, of terms \
@@ -40,15 +40,16 @@ pub struct Disagreement {
     pub form: String,
     /// The quantity.
     pub quantity: String,
-    /// Its value by the first derivation, compiled.
+    /// Its value according to the compiled first derivation.
     pub first: f64,
-    /// Its value by the second.
+    /// Its value according to the second derivation.
     pub second: f64,
-    /// The size of its terms, in its own units, with rounding carried through the linear equations.
+    /// The size of its terms, in the units of the quantity, including rounding errors propagated through the
+    /// linear equations.
     pub size: f64,
     /// Time.
     pub t: f64,
-    /// Coordinates and quasi-velocities.
+    /// The coordinates and quasi-velocities, with their values.
     pub state: Vec<(String, f64)>,
 }
 
@@ -64,7 +65,7 @@ impl fmt::Display for State<'_> {
     }
 }
 
-/// Why the second derivation cannot be made.
+/// The reason why the second derivation cannot be carried out.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Unable {
@@ -80,19 +81,20 @@ pub enum Unable {
         /// The name.
         name: String,
     },
-    /// d() of velocities where accelerations are not known, or d() nested too deeply.
+    /// d() is applied to velocities where accelerations are not known, or nested too deeply.
     #[error("d() of velocities, or nested too deeply")]
     NoRate,
-    /// A reaction outside `[integrals]` and `[outputs]`.
+    /// A reaction is used outside `[integrals]` and `[outputs]`.
     #[error("a reaction where none is known")]
     NoReaction,
-    /// Quasi-velocities of which only some are defined.
+    /// Only some of the quasi-velocities are defined.
     #[error("the quasi-velocity `{name}` is neither defined nor in [kinematics]")]
     Undefined {
         /// A quasi-velocity that is not defined.
         name: String,
     },
-    /// The frame is of lower rank, and the brackets are not given.
+    /// The rank of the frame is lower than the number of quasi-velocities, and the brackets are neither given
+    /// nor determined by constants.
     #[error("the brackets of the quasi-velocities are neither given nor determined by constants")]
     NoBrackets,
     /// A name of `[algebra]` that is not in the table of the second derivation.
@@ -106,7 +108,7 @@ pub enum Unable {
 /// The reason why a state is skipped.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum Irregular {
-    /// The model cannot be evaluated anywhere.
+    /// The second derivation cannot be carried out at any state.
     #[error(transparent)]
     Unable(#[from] Unable),
     /// A value is not finite.
@@ -115,7 +117,7 @@ pub(crate) enum Irregular {
         /// The quantity.
         what: &'static str,
     },
-    /// A derivative at a corner of |x|, min, max, sign or step.
+    /// A derivative is needed at a corner of |x|, min, max, sign or step.
     #[error("`{function}` has a corner")]
     Corner {
         /// The function.
@@ -138,13 +140,13 @@ pub(crate) enum Irregular {
         /// Its message.
         message: String,
     },
-    /// A limit of the work was reached, which ends the comparison.
+    /// A limit on the amount of work was reached, which ends the comparison.
     #[error("{what}")]
     Spent {
         /// The limit.
         what: Spent,
     },
-    /// Rounding errors are amplified so much that they hide errors of derivation.
+    /// Rounding errors are amplified so much that they would hide errors of derivation.
     #[error("rounding errors are amplified too much")]
     IllConditioned,
 }

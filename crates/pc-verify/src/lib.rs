@@ -1,14 +1,14 @@
 //! A second derivation of the equations of motion of a text model, and its comparison with the first.
 //!
-//! The first turns the text into expressions of a graph, which is simplified by fingerprints, and these into
-//! machine code. The second shares only the parsed text with it. It evaluates the syntax trees over
-//! dual numbers, which gives every derivative, sets up Lagrange's equations with multipliers at one state and
-//! solves them by dense elimination with pivoting: no graph, no rewriting, and no brackets as long as the
-//! frame determines them. If the rank of the frame is below the number of quasi-velocities, the equations (9)
-//! are used as they are defined, with the given brackets.
+//! The first derivation turns the text into expressions of a graph, which is simplified using fingerprints,
+//! and compiles these to machine code. The second derivation shares only the parsed text with the first. It
+//! evaluates the syntax trees over dual numbers, which gives every derivative, sets up Lagrange's equations
+//! with multipliers at one state and solves them by dense elimination with pivoting. It uses no graph, no
+//! rewriting, and no brackets as long as the frame determines them. If the rank of the frame is below the
+//! number of quasi-velocities, equations (9) are used in their original form, with the given brackets.
 //!
-//! [`verify`] compares both at random states on the constraints, in each form that the program offers. It compares ẋ,
-//! η̇ or ẏ, the multipliers, the energy with its rate, integrals and outputs.
+//! [`verify`] compares both at random states that satisfy the constraints, in each form that the program offers. It
+//! compares ẋ, η̇ or ẏ, the multipliers, the energy with its rate, integrals and outputs.
 //!
 //! ```
 //! use pc_model::{Builtin, Model};
@@ -23,8 +23,9 @@
 //!
 //! # Around it
 //!
-//! Below: [`pc_model`], the text and the first derivation. Above: [pc-report](../pc_report/index.html) and
-//! [pc-cli](../pc_cli/index.html), which refuses a motion on which the two disagree.
+//! Lower layers: [`pc_model`], the text and the first derivation. Upper layers:
+//! [pc-report](../pc_report/index.html) and [pc-cli](../pc_cli/index.html), which refuses a motion on which
+//! the two derivations disagree.
 
 mod comparison;
 mod derivation;

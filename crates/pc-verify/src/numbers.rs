@@ -1,7 +1,7 @@
 //! Numbers with additional information.
 //!
-//! A `number` carries its rates of change, a `sized` value the size of its terms, which a `balance` sums and `linear` equations
-//! use; `rounding` introduces deliberate errors, `units` are the sizes implied by the text.
+//! A `number` carries its rates of change and a `sized` value the size of its terms; a `balance` sums such terms, and `linear`
+//! equations use their sizes; `rounding` introduces deliberate errors, and `units` are the sizes implied by the text.
 
 pub(crate) mod balance;
 pub(crate) mod linear;

@@ -1,7 +1,7 @@
 //! The text of a model, read a second time.
 //!
-//! A syntax tree becomes a `term`, and all terms the `text`, with bodies (`body`), bodies on joints (`tree`), and the reactions on
-//! them (`resultant`); `couplings` says which velocities occur together.
+//! A syntax tree is turned into a `term`, and all terms form the `text`, with bodies (`body`), bodies on joints (`tree`), and the
+//! reactions on them (`resultant`); `couplings` says which velocities occur together.
 
 pub(crate) mod body;
 pub(crate) mod couplings;

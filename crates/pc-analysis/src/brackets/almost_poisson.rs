@@ -60,7 +60,7 @@ impl<'g> PoissonBracket<'g> {
     }
 }
 
-/// (∂L/∂η_α)_0 with the free quasi-velocities substituted, and the number of free quasi-velocities.
+/// (∂L/∂η_α)_0 in terms of the symbols `free` of the free quasi-velocities, and the number of these.
 fn dropped_momenta<'g>(constrained: &Constrained<'g>, free: &[Expr<'g>]) -> (Vec<Expr<'g>>, usize) {
     let (system, l) = (constrained.system(), free.len());
     let eta = system.quasi_velocities();

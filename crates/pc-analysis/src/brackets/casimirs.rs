@@ -8,8 +8,8 @@ use crate::integrals::ansatz::Ansatz;
 use crate::integrals::polynomials::{Generator, combination, independent, monomials};
 
 impl<'g> PoissonBracket<'g> {
-    /// Whether (f, z_i) = 0 for every variable z_i, as far as the graph can tell: then f is an integral
-    /// whatever the Hamiltonian.
+    /// Whether (f, z_i) = 0 for every variable z_i, as far as the graph can tell: if so, f is an integral
+    /// whatever the Hamiltonian is.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for a function of anything other than variables and constants.
@@ -17,10 +17,10 @@ impl<'g> PoissonBracket<'g> {
         Ok(self.field(f)?.iter().all(|rate| rate.is_zero()))
     }
 
-    /// The Casimirs that are linear combinations of `functions` with rational coefficients; a basis of them.
+    /// A basis of the Casimirs that are linear combinations of `functions` with rational coefficients.
     ///
-    /// Each is proved: (C, z_i) is folded to zero. See [`linear_relations`](pc_mech::Graph::linear_relations) for what
-    /// may be missed.
+    /// Each is proved: (C, z_i) is folded to zero. See [`linear_relations`](pc_mech::Graph::linear_relations) for
+    /// relations that may be missed.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for a function of anything other than variables and constants.
@@ -29,8 +29,8 @@ impl<'g> PoissonBracket<'g> {
         Ok(self.combinations(functions))
     }
 
-    /// Functionally independent Casimirs of the form of an ansatz, Σ a_jl m_j f_l with monomials m_j in those
-    /// of the variables that are `moving` and rational a_jl, and independent of those known to the ansatz.
+    /// Functionally independent Casimirs that have the form of an ansatz, Σ a_jl m_j f_l with monomials m_j
+    /// in the `moving` variables and rational a_jl, and are independent of the functions known to the ansatz.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for an ansatz with functions of anything other than variables and constants.
@@ -58,8 +58,9 @@ impl<'g> PoissonBracket<'g> {
     }
 
     /// Functionally independent Casimirs that are polynomials of degree ≤ `degree` in the variables, with
-    /// rational coefficients; of low degree first. There are at most [`corank`](PoissonBracket::corank) of
-    /// them; where there are fewer, the others are of higher degree, or rational, or transcendental.
+    /// rational coefficients; those of low degree come first. There are at most
+    /// [`corank`](PoissonBracket::corank) of them; if there are fewer, the remaining Casimirs are of higher
+    /// degree, rational or transcendental.
     ///
     /// ```
     /// use pc_analysis::PoissonBracket;

@@ -18,8 +18,8 @@ use crate::integrals::polynomials::independent;
 ///   (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m   (12),
 ///
 /// and generates the motion, ẋ_i = (x_i, H), ẏ_s = (y_s, H), where b_0 = 0, c_0s = 0 and Q = 0. The term c_0s^m
-/// ∂f/∂y_s y_m that the source adds for other systems is left out: with it (f, g) is not −(g, f). For them use the
-/// [extended](PoissonBracket::extended) bracket.
+/// ∂f/∂y_s y_m that the source adds for other systems is left out: with it (f, g) would not equal −(g, f). For
+/// them use the [extended](PoissonBracket::extended) bracket.
 ///
 /// Besides the variables, functions may contain symbols that count as constants: the symbols in the tensor,
 /// those of the system to which it belongs except for its quasi-velocities, and those
@@ -35,9 +35,9 @@ pub struct PoissonBracket<'g> {
 }
 
 /// The symbols of the system that are neither variables of its bracket nor quasi-velocities: time unless it
-/// is a variable, parameters, and any others in its equations. Where L is not quadratic, H contains the
-/// quasi-velocities; at their values its derivatives with respect to the other symbols are those of H(x,
-/// y).
+/// is a variable, parameters, and any others in its equations. If L is not quadratic, H contains the
+/// quasi-velocities; where these have their values, the derivatives of H with respect to the other symbols
+/// are those of H(x, y).
 fn constants<'g>(system: &System<'g>, variables: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let closed = quadratic(system.graph(), system.lagrangian(), system.quasi_velocities()).is_some();
     let mut constants = system.symbols();
@@ -45,7 +45,7 @@ fn constants<'g>(system: &System<'g>, variables: &[Expr<'g>]) -> Vec<Expr<'g>> {
     constants
 }
 
-/// The symbol of y_0: `p_t`, or one with more `p_` if that is taken.
+/// The symbol of y_0: `p_t`, prefixed with further `p_` if that name is taken.
 fn time_momentum_symbol<'g>(system: &System<'g>, momenta: &[Expr<'g>]) -> Expr<'g> {
     let parameters = system.parameters().iter().map(|&(symbol, _)| symbol);
     let state = system.frame().coordinates().iter().chain(system.quasi_velocities()).chain(momenta).copied();
@@ -57,8 +57,8 @@ fn time_momentum_symbol<'g>(system: &System<'g>, momenta: &[Expr<'g>]) -> Expr<'
     system.graph().symbol(&name)
 }
 
-/// The brackets of (t, x, y_0, y): (t, y_0) = 1, (x_i, y_s) = b_is, (y_s, y_r) = c_rs^m y_m with r, s from
-/// 0; all others are 0.
+/// The brackets of (t, x, y_0, y): (t, y_0) = 1, (x_i, y_s) = b_is, (y_s, y_r) = c_rs^m y_m with r and s
+/// counted from 0; all others are 0.
 fn extended_tensor<'g>(
     frame: &Frame<'g>,
     structure: &StructureCoefficients<'g>,
@@ -120,11 +120,11 @@ impl<'g> PoissonBracket<'g> {
         }
     }
 
-    /// The bracket in the n + k + 2 variables (t, x, y_0, y): (12) with r, s from 0 (m from 1), y_0
-    /// conjugate to t.
+    /// The bracket in the n + k + 2 variables (t, x, y_0, y): (12) with r and s counted from 0 and m from 1,
+    /// and with y_0 conjugate to t.
     ///
-    /// With H + y_0 it generates the motion of every system without forces Q, also where b_0 or c_0s are not
-    /// 0: ẋ_i = (x_i, H + y_0) is (11), ẏ_s = (y_s, H + y_0) is (10), and ẏ_0 = (y_0, H) = −dH/dt.
+    /// With H + y_0 it generates the motion of every system without forces Q, even if b_0 or c_0s are not 0:
+    /// ẋ_i = (x_i, H + y_0) is (11), ẏ_s = (y_s, H + y_0) is (10), and ẏ_0 = (y_0, H) = −dH/dt.
     pub fn extended(system: &System<'g>) -> PoissonBracket<'g> {
         let (t, x, y) = (system.frame().time(), system.frame().coordinates(), system.momentum_symbols());
         let y0 = time_momentum_symbol(system, &y);
@@ -184,7 +184,7 @@ impl<'g> PoissonBracket<'g> {
         }
     }
 
-    /// The same bracket with more symbols that count as constants in functions.
+    /// The same bracket with additional symbols that count as constants in functions.
     #[must_use]
     pub fn with_constants(mut self, constants: impl IntoIterator<Item = Expr<'g>>) -> PoissonBracket<'g> {
         self.constants.extend(constants);
@@ -205,8 +205,8 @@ impl<'g> PoissonBracket<'g> {
         check_variables("a function in a Poisson bracket", self.graph, functions, &known)
     }
 
-    /// The first three variables whose brackets do not satisfy Jacobi's identity, with the defect. A defect that is
-    /// not folded to zero counts if numbers show that it is not zero.
+    /// The first three variables whose brackets do not satisfy Jacobi's identity, with the defect; `None` if there
+    /// are none. A defect that is not folded to zero counts only if its numerical values show that it is not zero.
     pub fn jacobi_violation(&self) -> Option<([Expr<'g>; 3], Expr<'g>)> {
         let z = &self.variables;
         let triples = (0..z.len())
@@ -219,12 +219,13 @@ impl<'g> PoissonBracket<'g> {
             .find(|&(_, defect)| !Neighbourhood::anywhere(self.graph, &[defect]).vanishes(self.graph, defect))
     }
 
-    /// The graph of all its expressions.
+    /// The graph that holds all expressions of the bracket.
     pub fn graph(&self) -> &'g Graph {
         self.graph
     }
 
-    /// The variables z: (x, y), n + k of them, or (t, x, y_0, y) of the extended bracket, n + k + 2.
+    /// The variables z: the n + k variables (x, y), or the n + k + 2 variables (t, x, y_0, y) of the extended
+    /// bracket.
     pub fn variables(&self) -> &[Expr<'g>] {
         &self.variables
     }
@@ -245,13 +246,13 @@ impl<'g> PoissonBracket<'g> {
     /// [`closure`](PoissonBracket::closure).
     ///
     /// # Errors
-    /// [`AnalysisError::NotAVariable`] for a function of anything else.
+    /// [`AnalysisError::NotAVariable`] for a function of anything other than variables and constants.
     pub fn of(&self, f: Expr<'g>, g: Expr<'g>) -> Result<Expr<'g>, AnalysisError> {
         self.check(&[f, g])?;
         Ok(self.bracket(f, g))
     }
 
-    /// The rates (f, h) of the functions f, one for each, along the flow of h, ż_i = (z_i, h).
+    /// The rates (f, h) of the functions f along the flow of h, ż_i = (z_i, h), one for each function.
     ///
     /// # Errors
     /// As for [`of`](PoissonBracket::of).
@@ -261,7 +262,7 @@ impl<'g> PoissonBracket<'g> {
         Ok(self.along(functions, h))
     }
 
-    /// The components (z_i, h) = P_ij ∂h/∂z_j of the vector field of h, as many as variables.
+    /// The components (z_i, h) = P_ij ∂h/∂z_j of the vector field of h, one for each variable.
     ///
     /// # Errors
     /// As for [`of`](PoissonBracket::of).
@@ -270,7 +271,7 @@ impl<'g> PoissonBracket<'g> {
         Ok(self.components(h))
     }
 
-    /// (f, (g, h)) + (g, (h, f)) + (h, (f, g)): zero, by Jacobi's identity.
+    /// (f, (g, h)) + (g, (h, f)) + (h, (f, g)), which is zero if Jacobi's identity holds.
     ///
     /// # Errors
     /// As for [`of`](PoissonBracket::of).
@@ -279,8 +280,9 @@ impl<'g> PoissonBracket<'g> {
         Ok(self.defect(f, g, h))
     }
 
-    /// The functions, their brackets, the brackets of these and so on, as far as they are functionally
-    /// independent; the given ones come first. Brackets of integrals are integrals.
+    /// The functions, their brackets, the brackets of these and so on, without those that depend functionally
+    /// on earlier ones; the given functions come first. If the given functions are integrals, so are their
+    /// brackets.
     ///
     /// # Errors
     /// As for [`of`](PoissonBracket::of).
@@ -325,12 +327,12 @@ impl<'g> PoissonBracket<'g> {
         self.graph.sum(cycle.map(|(f, g, h)| self.bracket(f, self.bracket(g, h))))
     }
 
-    /// Rank of the Poisson tensor at almost all points, always even.
+    /// The rank of the Poisson tensor at almost all points; it is always even.
     pub fn rank(&self) -> usize {
         self.graph.generic_rank_of_entries(self.tensor.columns(), &self.tensor.nonzero_rows())
     }
 
-    /// Number of variables less rank: the number of independent Casimirs near almost every point.
+    /// The number of variables minus the rank: the number of independent Casimirs near almost every point.
     pub fn corank(&self) -> usize {
         self.variables.len() - self.rank()
     }

@@ -5,23 +5,23 @@ use pc_mech::{Canonical, Expr, Graph, Identity, Neighbourhood};
 use crate::error::AnalysisError;
 use crate::hamilton_jacobi::{hamilton_jacobi, slopes};
 
-/// The number of points at which the residual is evaluated, to show the largest.
+/// The number of points at which the residual is evaluated in order to show the largest.
 const POINTS: u64 = 16;
 
 /// The verdict on an action S(t, x, α).
 #[derive(Clone, Debug)]
 pub struct ProposedAction<'g> {
-    /// X_0 S + H(t, x, X_s S), zero if that is proved.
+    /// The remainder X_0 S + H(t, x, X_s S), which is zero if that is proved.
     pub remainder: Expr<'g>,
     /// Whether the remainder vanishes, relative to its two terms.
     pub identity: Identity,
     /// A point where it does not vanish, if there is one.
     pub refuted: Option<Residual>,
-    /// The rank of ∂(X_s S)/∂α at almost all points, k if the integral is complete.
+    /// The rank of ∂(X_s S)/∂α at almost all points, which is k if the integral is complete.
     pub rank: usize,
 }
 
-/// The value that a remainder has at a point.
+/// The value of a remainder at a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Residual {
     /// Names and values of its symbols.
@@ -31,8 +31,8 @@ pub struct Residual {
 }
 
 impl<'g> ProposedAction<'g> {
-    /// The verdict on S = `action`, a function of (t, x) and of `constants`: by cancellation of terms, and by
-    /// numbers `near` a point where it is defined.
+    /// The verdict on S = `action`, a function of (t, x) and of `constants`: from the cancellation of terms,
+    /// and from numerical values `near` a point where S is defined.
     ///
     /// # Errors
     /// As for [`hamilton_jacobi`].
@@ -78,7 +78,8 @@ impl<'g> ProposedAction<'g> {
     }
 }
 
-/// The point, the centre or one near it, where the sum of two terms is largest relative to them.
+/// The residual at the point, the centre or one near it, where the sum of two terms is largest relative to
+/// their sizes.
 fn largest<'g>(graph: &'g Graph, terms: [Expr<'g>; 2], near: &Neighbourhood<'g>) -> Option<Residual> {
     let symbols = graph.symbols_of(&terms);
     let centre =

@@ -5,12 +5,13 @@ use std::ops::{Add, Mul, Neg};
 
 use pc_expr::{Expr, Folding, Function, Graph, Number, Scalar};
 
-/// Whether `expression` is zero wherever it is defined, as far as the graph can decide once the roots
-/// are related to each other here.
+/// Whether `expression` is zero wherever it is defined, as far as the graph can decide after this function
+/// has related the roots to each other.
 ///
-/// The graph knows the square of each root, but few relations between roots of several sums. So each root √u
-/// becomes a symbol r and, if u is linear in a symbol z, this symbol is eliminated: z = (r² − u_0)/u_1 for u
-/// = u_0 + u_1 z. The result is rational in r, and zero for all r only if `expression` is zero for all z.
+/// The graph knows the square of each root, but few relations between the roots of different sums. So each
+/// root √u becomes a symbol r and, if u is linear in a symbol z, this symbol is eliminated: z = (r² −
+/// u_0)/u_1 for u = u_0 + u_1 z. The result is rational in r, and it is zero for all r only if `expression`
+/// is zero for all z.
 pub(crate) fn vanishes<'g>(graph: &'g Graph, expression: Expr<'g>) -> bool {
     if expression.is_zero() {
         return true;
@@ -101,7 +102,7 @@ impl Scalar for Rooted<'_, '_> {
     }
 }
 
-/// The symbol of √`radicand`, one for all equal radicands.
+/// The symbol of √`radicand`; equal radicands share one symbol.
 fn root_of<'h>(graph: &'h Graph, roots: &Roots<'h>, radicand: Expr<'h>) -> Expr<'h> {
     let mut roots = roots.borrow_mut();
     if let Some(&(_, root)) = roots.iter().find(|(known, _)| *known == radicand) {

@@ -12,20 +12,20 @@ use crate::integrals::rates::Rates;
 pub struct Ansatz<'g> {
     /// Degree in η or y.
     pub degree: u32,
-    /// f_1, f_2, …, simple ones first; with [`Expr::ONE`] among them if the coefficients may be constants.
+    /// f_1, f_2, …, simple ones first; they include [`Expr::ONE`] if the coefficients may be constants.
     pub functions: Vec<Expr<'g>>,
-    /// Integrals that are known already: functions of them are not returned.
+    /// Integrals that are already known: functions of them are not returned.
     pub known: Vec<Expr<'g>>,
 }
 
 impl<'g> Rates<'g> {
-    /// The integrals that are linear combinations of `functions` with rational coefficients; a basis of them,
-    /// including constants and functions of each other.
+    /// A basis of the integrals that are linear combinations of `functions` with rational coefficients,
+    /// including constants and integrals that are functions of each other.
     ///
     /// The functions are of (t, x, η) or (t, x, y), and may contain parameters. Each integral is proved: its rate is
-    /// folded to zero. Parameters are unknowns that the coefficients do not contain:
-    /// [bind](Rates::with_parameters_bound) them to search for given values.
-    /// See [`linear_relations`](pc_expr::Graph::linear_relations) for what else may be missed.
+    /// folded to zero. Parameters count as unknowns, which the coefficients do not contain:
+    /// [bind](Rates::with_parameters_bound) them to search for given values. See
+    /// [`linear_relations`](pc_expr::Graph::linear_relations) for other integrals that may be missed.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for a function of something that does not belong to the motion.
@@ -35,8 +35,8 @@ impl<'g> Rates<'g> {
         Ok(relations.iter().map(|a| combination(self.graph, a, functions)).collect())
     }
 
-    /// The integrals of the form of the ansatz, functionally independent of each other and of the known
-    /// ones; of low degree first.
+    /// The integrals that have the form of the ansatz, functionally independent of each other and of the
+    /// known ones; those of low degree come first.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for a function of something that does not belong to the motion.
@@ -67,8 +67,9 @@ impl<'g> Rates<'g> {
     }
 
     /// The ansatz of polynomials of degree ≤ `degree` in η or y whose coefficients are polynomials of degree
-    /// ≤ `coefficients` in the coordinates, or, for those that the equations contain in sines and cosines
-    /// only, in their sine and cosine; no integrals are known. Time is left out; add functions of it if they matter.
+    /// ≤ `coefficients` in the coordinates, or, for coordinates that occur in the equations only in sines and
+    /// cosines, in their sine and cosine; its list of known integrals is empty. Time is left out; add functions of
+    /// it if they matter.
     pub fn ansatz(&self, degree: u32, coefficients: u32) -> Ansatz<'g> {
         let rates: Vec<Expr<'g>> = self.flow.iter().map(|&(_, rate)| rate).collect();
         let places: Vec<Places> = self.coordinates.iter().map(|&x| Places::of(self, x, &rates)).collect();
@@ -82,10 +83,11 @@ impl<'g> Rates<'g> {
     }
 }
 
-/// Where a symbol occurs in an expression: in the argument of a sine or cosine, or elsewhere.
+/// The positions in which a symbol occurs in an expression: in the argument of a sine or cosine, or
+/// elsewhere.
 ///
-/// Found by evaluating the expression over this type, in which the symbol occurs elsewhere and all others
-/// nowhere.
+/// It is found by evaluating the expression over this type: the symbol itself counts as occurring elsewhere,
+/// all others as occurring nowhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Places {
     in_circle: bool,

@@ -6,15 +6,15 @@ use pc_mech::{Expr, Number, System};
 
 use crate::integrals::polynomials::combination;
 
-/// A displacement X = a_s X_s with constant a_s whose momentum a_s y_s the motion conserves.
+/// A displacement X = a_s X_s with constant a_s, whose momentum a_s y_s is conserved by the motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CyclicDisplacement<'g> {
     /// a_1..a_k, coprime integers.
     pub coefficients: Vec<Number>,
     /// The integral a_s ∂L/∂η_s in terms of (t, x, η).
     pub momentum: Expr<'g>,
-    /// Whether X commutes with X_0..X_k, that is, a_s c_rs^m = 0 for r = 0..k. Then the condition is X L + a_s Q_s =
-    /// 0; otherwise terms of this Lagrangian cancel.
+    /// Whether X commutes with X_0..X_k, that is, a_s c_rs^m = 0 for r = 0..k. If so, the condition is X L + a_s
+    /// Q_s = 0; otherwise it holds because terms of this particular Lagrangian cancel.
     pub commutes: bool,
 }
 

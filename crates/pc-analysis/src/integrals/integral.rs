@@ -1,4 +1,4 @@
-//! Functions that a motion keeps, or may keep, with their verdicts.
+//! Functions that are constant along a motion, or may be, with their verdicts.
 
 use pc_mech::{Equations, Expr, Number, System};
 
@@ -17,7 +17,7 @@ pub struct Integral<'g> {
     pub verdict: ConservationVerdict<'g>,
     /// Whether an event may change it.
     pub jumps: bool,
-    /// Whether it is known to be a function of those before it in the list.
+    /// Whether it is known to be a function of the integrals before it in the list.
     pub dependent: bool,
 }
 
@@ -26,11 +26,11 @@ pub struct Integral<'g> {
 pub enum Origin {
     /// It is declared with the system.
     Declared,
-    /// It is declared, and a function of Casimirs.
+    /// It is declared, and is a function of Casimirs.
     DeclaredCasimir,
-    /// It is the energy of the velocities in the equations.
+    /// It is the energy formed with the velocities in the equations.
     Energy,
-    /// It is the energy of all velocities, if the equations are those of independent ones.
+    /// It is the energy formed with all velocities, while the equations contain only independent ones.
     EnergyOfAll,
     /// It is the momentum a_s y_s of a [`CyclicDisplacement`](crate::CyclicDisplacement).
     CyclicDisplacement {
@@ -39,7 +39,7 @@ pub enum Origin {
     },
     /// It is a Casimir of the bracket (12).
     Casimir,
-    /// An ansatz found it.
+    /// It was found by an ansatz.
     Found,
 }
 
@@ -50,9 +50,9 @@ pub enum ConservationVerdict<'g> {
     Conserved,
     /// It vanishes identically for these values of the parameters.
     ConservedHere,
-    /// It vanishes identically, possibly only for these values, where the function does not jump.
+    /// It vanishes identically, possibly only for these values, wherever the function does not jump.
     BetweenJumps,
-    /// It is unknown, because the function does not depend on time and state alone, such as one with reactions.
+    /// It is unknown, because the function depends on more than time and state, for example on reactions.
     NoFunction,
     /// It was not found to vanish.
     Rate {
@@ -60,10 +60,11 @@ pub enum ConservationVerdict<'g> {
         rate: Expr<'g>,
         /// Its value at the start, if it has one.
         at_start: Option<f64>,
-        /// The fraction of its terms that is left in their sum at the start, from 0 to 1: no more than rounding if the function
-        /// is an integral.
+        /// The size of the sum of its terms at the start as a fraction of their sizes, from 0 to 1: only rounding error if the
+        /// function is an integral.
         part_left: Option<f64>,
-        /// The same at states near the start, if the start alone does not refute it and every nearby state is possible.
+        /// The same at states near the start, if the start alone does not refute conservation and every nearby state is
+        /// possible.
         near: Option<f64>,
     },
 }
@@ -75,12 +76,12 @@ pub struct Integrals<'g> {
 }
 
 impl<'g> Integrals<'g> {
-    /// All of them, the declared ones first.
+    /// All functions, the declared ones first.
     pub fn list(&self) -> &[Integral<'g>] {
         &self.list
     }
 
-    /// Those that are proved to be conserved, possibly only for the present values of the parameters.
+    /// The functions that are proved to be conserved, possibly only for the present values of the parameters.
     pub fn conserved(&self) -> impl Iterator<Item = &Integral<'g>> {
         self.list.iter().filter(|integral| integral.is_conserved())
     }
@@ -89,7 +90,7 @@ impl<'g> Integrals<'g> {
         self.list.push(integral);
     }
 
-    /// Renames each integral for which `name` gives a name.
+    /// Renames each integral for which `name` returns a name.
     pub fn rename(&mut self, name: impl Fn(&Integral<'g>) -> Option<String>) {
         for integral in &mut self.list {
             if let Some(name) = name(integral) {
@@ -98,8 +99,8 @@ impl<'g> Integrals<'g> {
         }
     }
 
-    /// Drops integrals that were found by an ansatz and are functions of others that are `known` to be constant, such as the
-    /// constraints on positions.
+    /// Drops integrals that were found by an ansatz and are functions of quantities that are `known` to be constant, such as
+    /// the constraints on positions.
     pub fn drop_functions_of(&mut self, system: &System<'g>, known: &[Expr<'g>]) {
         let (graph, state) = (system.graph(), system.state());
         let known: Vec<Vec<Expr<'g>>> = known.iter().map(|&f| graph.gradient(f, &state)).collect();
@@ -110,7 +111,7 @@ impl<'g> Integrals<'g> {
         });
     }
 
-    /// Marks the energy as proved to be conserved: by a theorem, if its rate along the equations is not
+    /// Marks the energy as proved to be conserved, by a theorem, if its rate along the equations was not
     /// found to vanish.
     pub fn keep_energy(&mut self, equations: &Equations<'g>) {
         let open = |integral: &&mut Integral<'g>| {
@@ -124,8 +125,8 @@ impl<'g> Integrals<'g> {
     }
 
     /// Marks the conserved functions that resets may change: resets that do not leave the function unchanged for every
-    /// state, or that are `projected` to constraints. A reset is a list of components of the `system`'s state, each
-    /// with its new value.
+    /// state, or whose results are `projected` onto constraints. A reset is a list of components of the `system`'s
+    /// state, each with its new value.
     pub fn jump<'r>(
         &mut self,
         system: &System<'g>,
@@ -164,12 +165,12 @@ impl ConservationVerdict<'_> {
 }
 
 impl Integral<'_> {
-    /// Whether it is proved to keep its value, possibly only for these parameters.
+    /// Whether it is proved to be conserved, possibly only for the present values of the parameters.
     pub fn is_conserved(&self) -> bool {
         self.verdict.is_conserved()
     }
 
-    /// Whether it is the energy of the velocities in the equations.
+    /// Whether it is the energy formed with the velocities in the equations.
     pub fn is_energy(&self) -> bool {
         self.origin == Origin::Energy
     }

@@ -5,26 +5,26 @@ use std::collections::BTreeMap;
 use pc_algebra::affine;
 use pc_mech::{Canonical, Expr, System};
 
-/// A field X = a_s X_s, a_s functions of (t, x), with momentum a_s y_s, such that the motion conserves a_s
-/// y_s + f(t, x).
+/// A field X = a_s X_s, in which the a_s are functions of (t, x), such that the motion conserves a_s y_s +
+/// f(t, x), where a_s y_s is the momentum of X.
 ///
-/// It is a symmetry of L up to the rate of f. Where it [commutes](NoetherField::commutes) with all operators
-/// it is cyclic in Chetaev's sense: (9) of the frame with X among its operators has d/dt (a_s y_s) = X L +
-/// a_s Q_s. A coordinate that is cyclic in Lagrange's sense is X = ∂/∂x; other examples are the rotations in
-/// space of a body described in its own axes.
+/// X is a symmetry of L up to the rate of f. Where it [commutes](NoetherField::commutes) with all operators
+/// it is cyclic in Chetaev's sense: equations (9) in a frame with X among its operators contain d/dt (a_s
+/// y_s) = X L + a_s Q_s. A coordinate that is cyclic in Lagrange's sense corresponds to X = ∂/∂x; other
+/// examples are the rotations in space of a body described in its own axes.
 #[derive(Clone, Debug)]
 pub struct NoetherField<'g> {
     /// a_1..a_k
     pub coefficients: Vec<Expr<'g>>,
-    /// f, zero unless L changes along X by a rate.
+    /// f, zero unless L changes along X by the rate of a function.
     pub gauge: Expr<'g>,
     /// Whether [X_r, X] = (X_r a_m + a_s c_rs^m) X_m is found to vanish for r = 0..k.
     pub commutes: bool,
 }
 
 impl<'g> NoetherField<'g> {
-    /// The field of an integral of (t, x, η), if it is linear in the momenta and the equations are
-    /// [closed](Canonical::is_closed).
+    /// The field that belongs to an integral, a function of (t, x, η), if it is linear in the momenta and the
+    /// equations are [closed](Canonical::is_closed).
     ///
     /// ```
     /// use pc_analysis::NoetherField;
@@ -56,7 +56,7 @@ impl<'g> NoetherField<'g> {
     }
 }
 
-/// X_r a_m + a_s c_rs^m = 0 for r = 0..k, m = 1..k, as far as the graph can decide.
+/// Whether X_r a_m + a_s c_rs^m = 0 for r = 0..k, m = 1..k, as far as the graph can decide.
 fn commutes<'g>(system: &System<'g>, a: &[Expr<'g>]) -> bool {
     let (frame, structure, k) = (system.frame(), system.structure(), a.len());
     if structure.operators() != k {

@@ -1,4 +1,4 @@
-//! Integrals that are polynomials in η over a span of functions of the place.
+//! Integrals that are polynomials in η with coefficients in a span of functions of the position.
 
 use pc_mech::{Equations, Expr, Graph, Neighbourhood, Number};
 
@@ -8,22 +8,24 @@ use crate::integrals::polynomials::{Generator, combination, monomials};
 use crate::integrals::rates::Rates;
 use crate::integrals::search::{Search, binomial};
 
-/// The most functions with unknown coefficients; a search with so many takes some seconds.
+/// The largest number of functions with unknown coefficients; a search with this many takes some seconds.
 const MOST_FUNCTIONS: usize = 600;
 
-/// The longest accelerations along which they are differentiated, in operations written out.
+/// The greatest length of the accelerations along which functions are differentiated, in operations when
+/// written out.
 const LONGEST: u32 = 4_000;
 
-/// The most products of known integrals that are excluded from the results.
+/// The largest number of products of known integrals that are excluded from the results.
 const MOST_PRODUCTS: usize = 400;
 
-/// The most factors without velocities in such a product.
+/// The largest number of factors without velocities in such a product.
 const MOST_OF_PLACE: u32 = 2;
 
 /// The largest degree in the parameters that coefficients may have.
 const MOST_PARAMETER_DEGREE: u32 = 4;
 
-/// The most products of parameters and functions with unknown coefficients in such polynomials.
+/// The largest number of products of parameters and functions that have unknown coefficients in such
+/// polynomials.
 const MOST_WITH_PARAMETERS: usize = 300;
 
 /// The form of the integrals to be found: Σ a_jlm m_j p_l f_m with rational a_jlm, monomials m_j in η, monomials p_l
@@ -39,26 +41,26 @@ pub struct PolynomialAnsatz<'g> {
 /// The extent of a search by an ansatz.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AnsatzSearch {
-    /// It was searched, with this number of functions.
+    /// A search was made, with this number of functions.
     Made {
         /// The largest degree in the coordinates.
         coefficients: u32,
         /// The number of functions with an unknown coefficient.
         functions: usize,
     },
-    /// It was not searched: there are too many functions.
+    /// No search was made: there are too many functions.
     TooMany {
-        /// The number of functions with coefficients that contain no coordinates but those of the f_m.
+        /// The number of functions if the coefficients contain no coordinates except those in the f_m.
         functions: usize,
     },
-    /// It was not searched: the accelerations are too long.
+    /// No search was made: the accelerations are too long.
     TooLong,
 }
 
 impl<'g> Integrals<'g> {
     /// Adds the integrals of an ansatz to those already known, unless they are polynomials of known ones with rational
-    /// coefficients; those of low degree come first. Other functions of integrals before them are marked as dependent,
-    /// such as the third component of the Runge–Lenz vector.
+    /// coefficients; those of low degree come first. Integrals that are other functions of earlier ones, such as the
+    /// third component of the Runge–Lenz vector, are marked as dependent.
     ///
     /// They are sought for the present values of the parameters. If the coefficients are polynomials in the
     /// parameters, up to a common factor, these polynomials are used and the integral is proved for all
@@ -180,9 +182,9 @@ impl<'g> Integrals<'g> {
     }
 }
 
-/// The functions with unknown coefficients.
+/// The functions that have unknown coefficients in a search.
 struct Span<'g> {
-    /// In ascending degree in η.
+    /// In order of ascending degree in η.
     functions: Vec<Expr<'g>>,
     /// The number of functions of degree ≤ 0, 1, ….
     up_to_degree: Vec<usize>,
@@ -191,8 +193,8 @@ struct Span<'g> {
 }
 
 impl<'g> Span<'g> {
-    /// The span with coefficients of the largest degree up to `most` that can be searched; otherwise the
-    /// number of functions at degree 0.
+    /// The span whose coefficients have the largest degree up to `most` that can be searched; if even degree
+    /// 0 has too many functions, their number.
     fn new(
         graph: &'g Graph,
         rates: &Rates<'g>,
@@ -222,14 +224,15 @@ impl<'g> Span<'g> {
         Err(of_velocities.saturating_mul(times))
     }
 
-    /// The degree in η of a combination.
+    /// The degree in η of the combination with these coefficients.
     fn degree(&self, a: &[Number]) -> u32 {
         let last = a.iter().rposition(|a| !a.is_zero()).unwrap_or(0);
         self.up_to_degree.iter().filter(|&&count| count <= last).count() as u32
     }
 }
 
-/// The products of monomials in the coordinates and functions of the ansatz, independent of each other, 1 the first.
+/// The products of monomials in the coordinates and functions of the ansatz, independent of each other; the first
+/// is 1.
 fn place_functions<'g>(
     graph: &'g Graph,
     rates: &Rates<'g>,
@@ -273,8 +276,8 @@ fn products<'g>(graph: &'g Graph, known: &[Expr<'g>], eta: &[Expr<'g>], degree: 
     all
 }
 
-/// Whether f is a linear combination of functions with constant coefficients, as far as fingerprints can
-/// decide.
+/// Whether f is a linear combination, with constant coefficients, of the functions `of`, as far as
+/// fingerprints can decide.
 fn is_combination<'g>(graph: &'g Graph, of: &[Expr<'g>], f: Expr<'g>) -> bool {
     let columns: Vec<Vec<Expr<'g>>> = of.iter().chain([&f]).map(|&f| vec![f]).collect();
     graph.dependent_columns(&columns, &[]).iter().any(|&(j, _)| j == of.len())
@@ -284,8 +287,8 @@ fn is_combination<'g>(graph: &'g Graph, of: &[Expr<'g>], f: Expr<'g>) -> bool {
 /// up to a factor, if there is one whose coefficients are polynomials of low degree in the parameters of its
 /// rates; the one of lowest degree.
 ///
-/// It is unique up to its factor: relations in echelon form are independent without their last function, for
-/// these values and so for almost all.
+/// It is unique up to its factor: without the last of them, the functions in a relation in echelon form are
+/// independent, for these values and therefore for almost all.
 fn with_parameters<'g>(
     search: &Search<'_, 'g>,
     functions: &[Expr<'g>],

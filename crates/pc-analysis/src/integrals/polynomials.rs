@@ -2,10 +2,10 @@
 
 use pc_mech::{Expr, Graph, Number};
 
-/// A factor of monomials, and its largest power.
+/// A factor of monomials, and the largest power to which it is raised.
 pub(crate) type Generator<'g> = (Expr<'g>, u32);
 
-/// The products of powers of the generators of degree 0..=`degree`, simple ones first.
+/// The products of powers of the generators that have a degree in 0..=`degree`, simple ones first.
 pub(crate) fn monomials<'g>(generators: &[Generator<'g>], degree: u32) -> Vec<Expr<'g>> {
     (0..=degree).flat_map(|degree| of_degree(generators, degree)).collect()
 }

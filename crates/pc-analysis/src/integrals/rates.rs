@@ -5,7 +5,7 @@ use pc_mech::{Canonical, Equations, Expr, Graph, System};
 
 use crate::error::{AnalysisError, check_variables};
 
-/// The verdict on a function along the motion.
+/// The verdict on whether a function is constant along the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Conservation<'g> {
     /// Its rate vanishes identically: it is an integral.
@@ -13,7 +13,7 @@ pub enum Conservation<'g> {
     /// Its rate vanishes identically for the present values of the parameters.
     ConservedHere,
     /// Its rate vanishes identically, possibly only for the present values of the parameters, but the function jumps
-    /// where a sign or a step in it does, which its rate does not show.
+    /// where a sign or a step in it jumps, which its rate does not show.
     ConservedBetweenJumps,
     /// Its rate is not folded to zero by the graph.
     Changing(Expr<'g>),
@@ -29,9 +29,9 @@ impl Conservation<'_> {
 
 /// The derivative along the motion, df/dt = ∂f/∂t + ẋ_i ∂f/∂x_i + η̇_s ∂f/∂η_s, or with y_s in place of η_s.
 ///
-/// It is that of [`Equations`], including nonholonomic ones, for functions of (t, x, η, η̇), and that of
-/// [`Canonical`] equations for functions of (t, x, y). Where these are not [closed](Canonical::is_closed), the
-/// functions may contain η too, and the rates are in (t, x, η).
+/// For functions of (t, x, η, η̇) it follows from [`Equations`], including nonholonomic ones, and for
+/// functions of (t, x, y) from [`Canonical`] equations. Where these are not [closed](Canonical::is_closed),
+/// the functions may contain η too, and the rates are in (t, x, η).
 #[derive(Clone, Debug)]
 pub struct Rates<'g> {
     pub(crate) graph: &'g Graph,
@@ -51,7 +51,7 @@ pub struct Rates<'g> {
 }
 
 impl<'g> Rates<'g> {
-    /// The derivative along the motion of functions of (t, x, η, η̇), by Poincaré's equations.
+    /// The derivative along the motion of functions of (t, x, η, η̇), according to Poincaré's equations.
     pub fn poincare(equations: &Equations<'g>) -> Rates<'g> {
         let (system, accelerations) = (equations.system(), equations.accelerations());
         let symbols = system.accelerations().into_iter().zip(accelerations.iter().copied()).collect();
@@ -61,7 +61,7 @@ impl<'g> Rates<'g> {
         Rates { accelerations: symbols, ..rates }
     }
 
-    /// The derivative along the motion of functions of (t, x, y), by the canonical equations.
+    /// The derivative along the motion of functions of (t, x, y), according to the canonical equations.
     pub fn canonical(equations: &Canonical<'g>) -> Rates<'g> {
         let (system, y) = (equations.system(), equations.momenta());
         let states = equations.state_rates().to_vec();
@@ -101,7 +101,7 @@ impl<'g> Rates<'g> {
         }
     }
 
-    /// Checks that functions contain only symbols with a rate and constants.
+    /// Checks that functions contain only constants and symbols that have a rate.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] naming the first other symbol.
@@ -112,7 +112,7 @@ impl<'g> Rates<'g> {
         check_variables("a function along the motion", self.graph, functions, &known)
     }
 
-    /// The rate df/dt, an expression in (t, x, η) or (t, x, y).
+    /// The rate df/dt, as an expression in (t, x, η) or (t, x, y).
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for a function of a symbol that does not belong to the motion: it neither
@@ -121,7 +121,7 @@ impl<'g> Rates<'g> {
         Ok(self.of_all(&[f])?[0])
     }
 
-    /// The rates of several functions, as many as these.
+    /// The rates of several functions, one for each.
     ///
     /// # Errors
     /// As for [`of`](Rates::of).
@@ -136,7 +136,7 @@ impl<'g> Rates<'g> {
         self.graph.substitute(&self.graph.directional(&functions, &self.flow), &self.momenta)
     }
 
-    /// Whether the motion keeps f constant. Where the rate contains roots, logarithms or the like,
+    /// Whether f is constant along the motion. If the rate contains roots, logarithms or the like,
     /// [`Conservation::Changing`] is not a proof of the contrary: the graph knows few of their identities.
     ///
     /// # Errors
@@ -155,8 +155,8 @@ impl<'g> Rates<'g> {
         })
     }
 
-    /// The rate relative to its terms, |df/dt|/Σ|∂f/∂z_i ż_i|, at a point, from 0 to 1: at most rounding if f
-    /// is an integral. None if all terms vanish, or are not numbers.
+    /// The rate relative to its terms, |df/dt|/Σ|∂f/∂z_i ż_i|, at a point, from 0 to 1: at most rounding
+    /// error if f is an integral. `None` if all terms vanish, or if a term is not a number.
     ///
     /// # Errors
     /// As for [`of`](Rates::of).
@@ -173,8 +173,8 @@ impl<'g> Rates<'g> {
         Ok(Some(left).filter(|left| left.is_finite()))
     }
 
-    /// Whether f contains a sign, a step or an angle of changing quantities, and so may jump, or is seen to
-    /// jump.
+    /// Whether f contains a sign, a step or an angle of changing quantities, and therefore may jump, or is
+    /// seen to jump.
     pub fn has_jumps(&self, f: Expr<'g>) -> bool {
         let f = self.graph.substitute(&[f], &self.accelerations)[0];
         let changing: Vec<Expr<'g>> = self.flow.iter().map(|&(symbol, _)| symbol).collect();

@@ -8,14 +8,14 @@ use crate::integrals::integral::{ConservationVerdict, Integral, Integrals, Origi
 use crate::integrals::polynomials::combination;
 use crate::integrals::rates::{Conservation, Rates};
 
-/// The most functions with unknown coefficients in an ansatz; a search with so many takes some hundredths of
-/// a second.
+/// The largest number of functions with unknown coefficients in an ansatz; a search with this many takes some
+/// hundredths of a second.
 const MOST_FUNCTIONS: usize = 150;
 
 impl<'g> Integrals<'g> {
     /// The declared integrals, the energy, and others that are found, each with a verdict: momenta of cyclic
     /// displacements, Casimirs, and integrals linear in η with polynomials of low degree as coefficients.
-    /// `near` has values of time, state and parameters.
+    /// `near` gives values of time, state and parameters.
     ///
     /// ```
     /// use pc_analysis::Integrals;
@@ -47,8 +47,8 @@ impl<'g> Integrals<'g> {
         Integrals { list }
     }
 
-    /// Adds the energy of all velocities, which a run observes; y·η − L of the independent ones is then
-    /// called Jacobi's.
+    /// Adds the energy formed with all velocities, which a run observes; y·η − L of the independent ones is
+    /// then named Jacobi's.
     pub fn add_energy_of_all(
         &mut self,
         equations: &Equations<'g>,
@@ -75,13 +75,13 @@ impl<'g> Integrals<'g> {
 pub(super) struct Search<'a, 'g> {
     pub(super) graph: &'g Graph,
     equations: &'a Equations<'g>,
-    /// The system with numbers for parameters.
+    /// The system with its parameters replaced by numbers.
     bound: System<'g>,
     pub(super) rates: Rates<'g>,
     near: &'a Neighbourhood<'g>,
     /// (t, x, η, z)
     variables: Vec<Expr<'g>>,
-    /// Whether the brackets are those of all operators, so that the Lagrangian determines the motion.
+    /// Whether the brackets include all operators, so that the Lagrangian determines the motion.
     unconstrained: bool,
 }
 
@@ -147,7 +147,7 @@ impl<'a, 'g> Search<'a, 'g> {
         integrals.map(with_verdict).collect()
     }
 
-    /// The energy, whose rate needs no accelerations.
+    /// The energy, with a verdict on its rate, which needs no accelerations.
     fn energy(&self) -> Integral<'g> {
         let value = self.equations.energy();
         let verdict = match self.verdict(value) {
@@ -177,8 +177,8 @@ impl<'a, 'g> Search<'a, 'g> {
     }
 
     /// The rate of the energy without accelerations: the power of the forces and the explicit time dependence. Under constraints
-    /// that are homogeneous in the velocities, c_0r^m = 0, reactions have no power; whether it equals the `rate` along the
-    /// equations is then checked.
+    /// that are homogeneous in the velocities, c_0r^m = 0, reactions have no power; it is then checked that this rate equals the
+    /// `rate` along the equations.
     fn power(&self, rate: Expr<'g>) -> Option<Expr<'g>> {
         if self.unconstrained {
             return Some(self.system().energy_rate());
@@ -188,7 +188,8 @@ impl<'a, 'g> Search<'a, 'g> {
         self.near.vanishes(self.graph, rate - power).then_some(power)
     }
 
-    /// The momenta of cyclic displacements that are not declared, for the values of the parameters.
+    /// The momenta of cyclic displacements that are not declared as integrals, for the present values of the
+    /// parameters.
     fn cyclic_momenta(&self) -> Vec<Integral<'g>> {
         if !self.unconstrained {
             return Vec::new();
@@ -214,7 +215,8 @@ impl<'a, 'g> Search<'a, 'g> {
         (1..).zip(new).map(with_parameters).collect()
     }
 
-    /// The verdict on a function that is proved to be conserved at least for these parameters.
+    /// The verdict on a function that is proved to be conserved at least for the present values of the
+    /// parameters.
     pub(super) fn proved(&self, function: Expr<'g>) -> ConservationVerdict<'g> {
         match self.verdict(function) {
             known @ (ConservationVerdict::Conserved | ConservationVerdict::BetweenJumps) => known,
@@ -224,7 +226,7 @@ impl<'a, 'g> Search<'a, 'g> {
     }
 
     /// The Casimirs of the bracket (12) in terms of (x, η) that are independent of the integrals in the list;
-    /// functions of Casimirs in the list are marked as such.
+    /// integrals in the list that are functions of Casimirs are marked as such.
     ///
     /// If b_0 = 0, c_0s = 0 and Q = 0, they are integrals for any Lagrangian.
     fn add_casimirs(&self, list: &mut Vec<Integral<'g>>) {
@@ -283,7 +285,8 @@ impl<'a, 'g> Search<'a, 'g> {
         }
     }
 
-    /// Integrals linear in η with coefficients of low degree in x that are independent of those in the list.
+    /// Adds integrals that are linear in η, with coefficients of low degree in x, and independent of those in
+    /// the list.
     fn add_found(&self, list: &mut Vec<Integral<'g>>) {
         let (n, k) = (self.bound.frame().coordinates().len(), self.bound.quasi_velocities().len());
         let largest = if n <= 4 { 2 } else { 1 };
@@ -313,13 +316,13 @@ impl<'a, 'g> Search<'a, 'g> {
         self.rank(&[known, &[f]].concat()) > self.rank(known)
     }
 
-    /// The number of independent functions.
+    /// The number of independent functions among these.
     fn rank(&self, functions: &[Expr<'g>]) -> usize {
         rank_of_gradients(self.graph, functions, &self.variables)
     }
 }
 
-/// Rank of ∂f/∂z at almost all points: the number of independent functions.
+/// The rank of ∂f/∂z at almost all points, which is the number of independent functions.
 pub(crate) fn rank_of_gradients<'g>(
     graph: &'g Graph,
     functions: &[Expr<'g>],

@@ -1,7 +1,7 @@
 //! Pairing of rows and columns at the least cost.
 
-/// For each row of a square matrix of costs, the column it is paired with, such that the sum of the costs
-/// is least: the method of H. W. Kuhn and J. Munkres with potentials, O(n³).
+/// The column with which each row of a square matrix of costs is paired, such that the sum of the costs is
+/// least: the method of H. W. Kuhn and J. Munkres with potentials, O(n³).
 pub(super) fn cheapest(costs: &[Vec<f64>]) -> Vec<usize> {
     let n = costs.len();
     // Row and column 0 are placeholders; each column stores its row.
@@ -51,7 +51,7 @@ pub(super) fn cheapest(costs: &[Vec<f64>]) -> Vec<usize> {
 mod tests {
     use super::*;
 
-    /// Compared with all pairings.
+    /// The result is compared with all pairings.
     #[test]
     fn no_pairing_is_cheaper() {
         fn least(costs: &[Vec<f64>], row: usize, used: &mut Vec<usize>) -> f64 {

@@ -13,8 +13,8 @@ use crate::stability::steady_motion::SteadyOptions;
 use crate::stability::steady_motions::{SAME, periods, primes};
 use crate::stability::steady_search::{EnergyCriterion, Known, NearbySteadyMotion, Seeker, largest};
 
-/// A search for equilibria by Newton's method from many starts: those of a sequence of low discrepancy,
-/// multiples of roots of primes modulo 1 (R. Kronecker, H. Weyl), the same each time.
+/// A search for equilibria by Newton's method from many starts: the points of a low-discrepancy sequence,
+/// multiples of square roots of primes modulo 1 (R. Kronecker, H. Weyl), which are the same each time.
 ///
 /// ```
 /// use pc_analysis::{EquilibriumSearch, Leaf, Linearizer};
@@ -40,8 +40,8 @@ pub struct EquilibriumSearch {
 }
 
 impl Default for EquilibriumSearch {
-    /// Angles over one turn about the start, other coordinates and first-order states by 2 (1 + |x|) to both
-    /// sides of it; 256 starts.
+    /// Angles vary over one turn about the start, other coordinates and first-order states by 2 (1 + |x|) on
+    /// either side of it; there are 256 starts.
     fn default() -> EquilibriumSearch {
         EquilibriumSearch { bounds: Vec::new(), starts: 256 }
     }
@@ -52,14 +52,14 @@ impl Default for EquilibriumSearch {
 pub struct Equilibria {
     /// The equilibria in ascending order of energy.
     pub list: Vec<FoundEquilibrium>,
-    /// The cyclic coordinates: equilibria remain equilibria whatever their values, which are those of the
-    /// start.
+    /// The cyclic coordinates: equilibria remain equilibria whatever values these have; here they have those
+    /// of the start.
     pub anywhere: Vec<String>,
     /// The coordinates and first-order states that were searched over, with the bounds of the starts.
     pub bounds: Vec<(String, f64, f64)>,
-    /// The number of starts, and of those from which Newton's method converged.
+    /// The number of starts.
     pub starts: usize,
-    /// The number of starts from which it converged.
+    /// The number of starts from which Newton's method converged.
     pub converged: usize,
 }
 
@@ -74,38 +74,39 @@ pub struct FoundEquilibrium {
     pub linearization: Linearization,
     /// The results on its stability.
     pub motion: NearbySteadyMotion,
-    /// The dimension of its family, without that due to cyclic coordinates; 0 if it is isolated, even if the first approximation
-    /// has a kernel, as at the minimum of x⁴.
+    /// The dimension of its family, not counting the dimensions due to cyclic coordinates; 0 if it is isolated, even if the
+    /// first approximation has a kernel, as at the minimum of x⁴.
     pub family: usize,
     /// The number of members of the family that were found.
     pub members: usize,
-    /// The greatest distance of a member from this one, of components relative to 1 + |y|.
+    /// The greatest distance of a member from this one, as a difference of components relative to 1 + |y|.
     reach: f64,
 }
 
-/// If a kernel of the first approximation belongs to an isolated equilibrium, Newton's method ends somewhere within about this
-/// distance of it, relative to 1 + |y|: the rates are below its tolerance there.
+/// If the first approximation has a kernel at an isolated equilibrium, Newton's method ends somewhere within about this
+/// distance of it, relative to 1 + |y|, where the rates are below the tolerance of the method.
 const FLAT: f64 = 0.02;
 
-/// How far from an equilibrium others of its family are looked for, relative to 1 + |y|, and in how many directions.
+/// The distance from an equilibrium, relative to 1 + |y|, at which others of its family are looked for, and the
+/// number of directions.
 const BESIDE: f64 = 0.3;
 const DIRECTIONS: usize = 3;
 
-/// Steps of Newton's method.
+/// The largest number of steps of Newton's method.
 const MOST_STEPS: usize = 60;
 
-/// If rates are steeper than at the start by this factor, coordinates are singular.
+/// If the slopes of the rates exceed those at the start by this factor, coordinates are singular.
 const MOST_STEEPER: f64 = 1e6;
 
-/// A rate above this fraction of |∂f/∂y| (1 + |y|) is not near a zero: it is small because it decays, like a
-/// force at a distance.
+/// A small rate above this fraction of |∂f/∂y| (1 + |y|) does not indicate a nearby zero: it is small because
+/// it decays, like a force at a great distance.
 const FALLING: f64 = 1e-3;
 
-/// Relative differences of energy within one family.
+/// The largest relative difference of the energies within one family.
 const SAME_ENERGY: f64 = 1e-9;
 
 impl EquilibriumSearch {
-    /// Bounds a coordinate or first-order state: starts are in the box, and results outside are left out.
+    /// Bounds a coordinate or first-order state: starts lie in the box, and results outside it are left out.
     #[must_use]
     pub fn within(mut self, name: impl Into<String>, low: f64, high: f64) -> EquilibriumSearch {
         self.bounds.push((name.into(), low, high));
@@ -118,11 +119,12 @@ impl EquilibriumSearch {
         EquilibriumSearch { starts, ..self }
     }
 
-    /// The equilibria found, on the leaf of the start (t, y): all rates vanish. No two are the same modulo
-    /// the periods of angles; a family with one energy is represented by one member. There may be others.
+    /// The equilibria found on the leaf of the start (t, y), states at which all rates vanish. No two
+    /// coincide modulo the periods of angles; a family of equal energy is represented by one member. There
+    /// may be other equilibria.
     ///
     /// `integrals` are those of the `equations` in independent quasi-velocities, which the energy
-    /// criterion uses; `linearizer` is of these equations, or of those with multipliers.
+    /// criterion uses; `linearizer` is made from these equations, or from those with multipliers.
     ///
     /// # Errors
     /// [`AnalysisError::UnknownComponent`], [`AnalysisError::CyclicBox`] or [`AnalysisError::EmptyBox`] for a
@@ -235,8 +237,8 @@ impl EquilibriumSearch {
     }
 }
 
-/// A stable sort by an order with equality up to rounding, which is not transitive as the standard library
-/// requires.
+/// A stable sort for an order in which equality holds up to rounding and is not transitive; the standard
+/// library requires a transitive order.
 fn insertion_sorted<T>(list: &mut [T], order: impl Fn(&T, &T) -> std::cmp::Ordering) {
     for i in 1..list.len() {
         let mut j = i;
@@ -261,7 +263,7 @@ struct Edge {
 }
 
 impl Domain {
-    /// Start number 0 is the model at rest, if that is in the box.
+    /// The guess with this number; number 0 is the model at rest, if that state is in the box.
     fn guess(&self, number: usize, start: &[f64], coordinates: usize, velocities: usize) -> Vec<f64> {
         let mut guess = start.to_vec();
         guess[coordinates..coordinates + velocities].fill(0.0);
@@ -275,7 +277,8 @@ impl Domain {
         guess
     }
 
-    /// Angles within a turn from the lower bound of their box, or nearest to zero.
+    /// The state with its angles within a turn from the lower bound of their box, or as near to zero as
+    /// possible.
     fn normalised(&self, mut state: Vec<f64>, start: &[f64]) -> Vec<f64> {
         for (i, period) in self.periods.iter().enumerate() {
             let Some(period) = period else { continue };
@@ -307,7 +310,7 @@ impl Domain {
         self.distance(a, b) <= SAME
     }
 
-    /// The greatest difference of components modulo periods, relative to 1 + |a|.
+    /// The greatest difference between components of two states modulo their periods, relative to 1 + |a|.
     fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
         let components = a.iter().zip(b).zip(&self.periods).map(|((a, b), period)| {
             let distance = (a - b).abs();
@@ -317,7 +320,7 @@ impl Domain {
         components.fold(0.0, f64::max)
     }
 
-    /// A place near a state, in one of a few directions that are not parallel to any plane of the components.
+    /// A point near a state, in one of a few directions that are not parallel to any coordinate plane.
     fn beside(&self, number: usize, state: &[f64]) -> Vec<f64> {
         let mut beside = state.to_vec();
         for (edge, prime) in self.edges.iter().zip(primes()) {
@@ -332,7 +335,7 @@ impl Domain {
     }
 }
 
-/// Eigenvalues of a form that are a smaller fraction of the largest count as zero.
+/// Eigenvalues of a form up to this fraction of the largest count as zero.
 const DEFINITE: f64 = 1e-10;
 
 impl FoundEquilibrium {

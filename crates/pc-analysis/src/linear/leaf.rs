@@ -5,15 +5,15 @@ use pc_mech::{Matrix, SingularValues};
 use crate::error::AnalysisError;
 use crate::numeric::dense::{norm, product};
 
-/// Singular values, and rows of an orthonormal basis, below this fraction of the largest are zeros.
-/// Entries of frames and slopes of constraints are accurate to some ten or hundred roundings.
+/// Singular values, and rows of an orthonormal basis, below this fraction of the largest count as zero.
+/// Entries of frames and slopes of constraints are accurate to within ten to a hundred rounding errors.
 pub(super) const ZERO: f64 = 1e-10;
 
 /// The directions δx in which coordinates can move: the image of b, tangent to the leaf of an integrable
 /// frame (Frobenius), within the kernel of the slopes of position constraints.
 #[derive(Clone, Debug)]
 pub(super) struct Directions {
-    /// An orthonormal basis as columns, n × d.
+    /// An orthonormal basis, stored as columns, n × d.
     basis: Matrix<f64>,
 }
 
@@ -22,12 +22,12 @@ pub(super) struct Directions {
 pub(super) struct Chart {
     /// The indices of the independent ones, ascending.
     pub(super) independent: Vec<usize>,
-    /// T, a row for each of the coordinates.
+    /// T, with a row for each of the coordinates.
     pub(super) of_independent: Matrix<f64>,
 }
 
 impl Directions {
-    /// The directions for the frame b, n × k, and the slopes of the positions, m × n.
+    /// The directions for the frame b, n × k, and the slopes of the position constraints, m × n.
     pub(super) fn new(b: &Matrix<f64>, slopes: &Matrix<f64>) -> Result<Directions, AnalysisError> {
         let n = b.rows();
         let frame = SingularValues::of(b)?;
@@ -44,7 +44,7 @@ impl Directions {
         Ok(Directions { basis: factors.kernel(factors.rank(ZERO)) })
     }
 
-    /// Independent ones among these coordinates: those that move most freely, the first among equals.
+    /// Independent coordinates among the given ones: those that move most freely, the first among equals.
     pub(super) fn chart(&self, coordinates: &[usize]) -> Result<Chart, AnalysisError> {
         let d = self.basis.columns();
         let all = Matrix::from_fn(coordinates.len(), d, |i, j| self.basis[(coordinates[i], j)]);
@@ -67,7 +67,7 @@ impl Directions {
 /// Quasi-velocities under conditions g(x, η) = 0 in terms of independent ones among them, δη = T δζ + S δx.
 #[derive(Clone, Debug)]
 pub(super) struct Velocities {
-    /// The numbers of the independent ones, ascending.
+    /// The indices of the independent ones, ascending.
     pub(super) independent: Vec<usize>,
     /// T, k × l.
     pub(super) of_independent: Matrix<f64>,
@@ -76,7 +76,7 @@ pub(super) struct Velocities {
 }
 
 impl Velocities {
-    /// From the slopes of the conditions by n coordinates and k quasi-velocities.
+    /// The velocities for conditions with these slopes with respect to n coordinates and k quasi-velocities.
     pub(super) fn new(slopes: &Matrix<f64>, n: usize, k: usize) -> Result<Velocities, AnalysisError> {
         let by_velocities = Matrix::from_fn(slopes.rows(), k, |a, s| slopes[(a, n + s)]);
         let by_coordinates = Matrix::from_fn(slopes.rows(), n, |a, i| -slopes[(a, i)]);
@@ -91,11 +91,12 @@ impl Velocities {
     }
 }
 
-/// What some roundings of products of numbers up to 1 leave in place of a zero.
+/// The remainder that some rounding errors in products of numbers up to 1 leave in place of a zero.
 const ROUNDING: f64 = 1e-14;
 
-/// Rows that are a basis of all rows, ascending: each time the row with the greatest remainder orthogonal to
-/// those already taken (the first among equals), as long as this is at least `zero`.
+/// The indices of rows that form a basis of all rows, ascending: each step takes the row with the greatest
+/// remainder orthogonal to those already taken (the first among equals), as long as this remainder exceeds
+/// `zero`.
 pub(super) fn independent_rows(matrix: &Matrix<f64>, zero: f64) -> Vec<usize> {
     let mut left: Vec<Vec<f64>> = matrix.to_rows();
     let mut picked = Vec::new();

@@ -13,12 +13,12 @@ use crate::stability::steady_motion::{SteadyOptions, first_approximation};
 
 /// δẏ = A δy + B δu, δh = C δy + D δu for small deviations of the reduced state: independent coordinates of
 /// the states that satisfy the constraints, independent quasi-velocities, and first-order states. Inputs
-/// deviate from the values they have.
+/// deviate from their present values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linearization {
     /// Time.
     pub t: f64,
-    /// The whole state with its names.
+    /// The whole state, with the names of its components.
     pub state: Vec<(String, f64)>,
     /// Whether all rates except those of cyclic coordinates vanish.
     pub is_steady: bool,
@@ -28,7 +28,7 @@ pub struct Linearization {
     pub distance: f64,
     /// The names of the r components of the reduced state.
     pub components: Vec<String>,
-    /// E in δy = E δ(reduced): all components of the state in terms of those r, to first order.
+    /// E in δy = E δ(reduced): all components of the state in terms of these r, to first order.
     pub extension: Matrix<f64>,
     /// The cyclic coordinates that are left out, with their rates.
     pub cyclic: Vec<(String, f64)>,
@@ -57,10 +57,11 @@ pub struct Linearization {
 /// The cyclic coordinates that are components of the reduced state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum CyclicCoordinates {
-    /// None: stability is judged without cyclic coordinates.
+    /// No cyclic coordinates: stability is judged without them.
     #[default]
     LeftOut,
-    /// Those that rest, unless moving ones act on them: the others have equations with constant coefficients.
+    /// The cyclic coordinates at rest on which no moving ones act: without the others the equations have
+    /// constant coefficients.
     KeptAtRest,
 }
 
@@ -68,7 +69,8 @@ pub enum CyclicCoordinates {
 const AT_REST: f64 = 1e-12;
 
 impl Linearizer {
-    /// At the equilibrium or steady motion near a state, found by Newton's method; cyclic coordinates are left out.
+    /// The linearization at the equilibrium or steady motion near a state, found by Newton's method; cyclic
+    /// coordinates are left out.
     ///
     /// # Errors
     /// [`AnalysisError::NoSteadyMotion`] with the residual; [`AnalysisError::DependsOnTime`];
@@ -82,7 +84,7 @@ impl Linearizer {
         self.steady_with(t, guess, options, CyclicCoordinates::LeftOut)
     }
 
-    /// As [`steady`](Linearizer::steady), with a choice about the cyclic coordinates.
+    /// As [`steady`](Linearizer::steady), with a choice of the cyclic coordinates that are included.
     ///
     /// # Errors
     /// As there.
@@ -104,9 +106,9 @@ impl Linearizer {
         Ok(result)
     }
 
-    /// The Jacobian on the states that satisfy the constraints, at any such state, steady or not;
-    /// with all cyclic coordinates. The reduced state is the deviation from a solution that passes
-    /// there.
+    /// The linearization on the states that satisfy the constraints, at any such state, steady or not; it
+    /// includes all cyclic coordinates. The reduced state is the deviation from the solution that passes
+    /// through this state.
     ///
     /// # Errors
     /// [`ShapeError`](pc_mech::ShapeError); if f is not defined, as [`rhs`](pc_mech::VectorField::rhs).
@@ -121,7 +123,8 @@ impl Linearizer {
         self.put_together(t, state, &[], is_steady)
     }
 
-    /// The number of components of the reduced state near a state, without the cyclic coordinates or with all of them.
+    /// The number of components that the reduced state has near a state, without the cyclic coordinates or with all of
+    /// them.
     ///
     /// # Errors
     /// [`ShapeError`](pc_mech::ShapeError); if f is not defined, as [`rhs`](pc_mech::VectorField::rhs).
@@ -138,7 +141,7 @@ impl Linearizer {
         Ok(reduced.kept.len())
     }
 
-    /// The cyclic coordinates that move, and those on whose rates they act.
+    /// The cyclic coordinates that move, and those on whose rates moving ones act.
     fn moving(&mut self, t: f64, state: &[f64]) -> Result<Vec<usize>, AnalysisError> {
         let rates = self.motion.rates(t, state)?;
         let jacobian = first_approximation(&mut self.motion, t, state)?;
@@ -156,7 +159,7 @@ impl Linearizer {
         }
     }
 
-    /// The cyclic coordinates on whose rates these act.
+    /// The cyclic coordinates whose rates depend on these components.
     fn acted_on(&self, by: &[usize]) -> Vec<usize> {
         let pattern = self.motion.sparsity();
         let acts_on = |i: usize| by.iter().any(|&j| pattern.is_none_or(|all| all.column(j).contains(&i)));
@@ -218,7 +221,8 @@ impl Linearizer {
         })
     }
 
-    /// The equations in the coordinates that are not cyclic, and as many cyclic ones as needed.
+    /// The equations of the second order in the coordinates that are not cyclic and as many cyclic ones as
+    /// are needed.
     fn second_order(
         &self,
         evaluated: &Evaluated,
@@ -250,7 +254,7 @@ impl Linearizer {
 }
 
 impl Evaluated {
-    /// The reduced state with the given ones of the n coordinates, for a state of `all` components.
+    /// The reduced state that uses only these of the n coordinates, for a state of `all` components.
     fn reduced(&self, coordinates: &[usize], n: usize, all: usize) -> Result<Reduced, AnalysisError> {
         let chart = self.directions.chart(coordinates)?;
         let Velocities { independent, of_independent, of_coordinates } = &self.velocities;

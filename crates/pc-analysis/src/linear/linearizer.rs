@@ -22,25 +22,29 @@ pub struct Leaf<'g> {
     /// The system with all quasi-velocities, including those that constraints make vanish: its frame is
     /// integrable.
     pub whole: System<'g>,
-    /// The f of the conditions f(x) = 0 that constraints imply.
+    /// The functions f in the conditions f(x) = 0 that constraints imply.
     pub positions: Vec<Expr<'g>>,
-    /// Functions of the coordinates alone that keep their start values, such as the length of a quaternion.
+    /// Functions of the coordinates alone that stay at their initial values, such as the length of a
+    /// quaternion.
     pub kept: Vec<Expr<'g>>,
 }
 
 impl<'g> Leaf<'g> {
-    /// All states of a system without constraints whose coordinates are independent.
+    /// The leaf that consists of all states, for a system without constraints whose coordinates are
+    /// independent.
     pub fn of(system: &System<'g>) -> Leaf<'g> {
         Leaf { whole: system.clone(), positions: Vec::new(), kept: Vec::new() }
     }
 
-    /// The number of functions of the coordinates that the frame keeps, n − rank b.
+    /// The number of functions of the coordinates that are constant along all motions in the frame, n − rank
+    /// b.
     pub fn codimension(&self) -> usize {
         self.whole.frame().coordinates().len() - self.whole.frame().rank()
     }
 }
 
-/// Linearizes the equations of motion, ẏ = f(t, y, u) with outputs h(t, y, u), by derivatives from the graph.
+/// Linearizes the equations of motion, ẏ = f(t, y, u) with outputs h(t, y, u), using derivatives from the
+/// graph.
 ///
 /// ```
 /// use pc_analysis::{Leaf, Linearizer, SteadyOptions};
@@ -69,40 +73,41 @@ impl<'g> Leaf<'g> {
 pub struct Linearizer {
     pub(super) motion: Motion,
     pub(super) cyclic: Vec<usize>,
-    /// Whether rates depend on time for the present parameters, and for any parameters.
+    /// Whether rates depend on time, for the present values of the parameters and, in `names_time`, for any
+    /// values.
     depends_on_time: bool,
     names_time: bool,
-    /// Names of the inputs and their places among the parameters.
+    /// The names of the inputs and their indices among the parameters.
     inputs: Vec<(String, usize)>,
     outputs: Vec<String>,
-    /// The positions, the kept functions and the conditions on velocities, then their slopes.
+    /// The position constraints, the kept functions and the conditions on velocities, then their slopes.
     surface: Evaluator,
     /// b, M, and for each output its derivatives with respect to the state, the accelerations, the reactions
     /// and the inputs.
     parts: Evaluator,
-    /// The reactions in the outputs.
+    /// The reactions that occur in the outputs.
     reactions: Option<Reactions>,
     pub(super) sizes: Sizes,
-    /// Whether all functions that the frame keeps are known.
+    /// Whether all functions that are constant along the motions in the frame are known.
     is_leaf_known: bool,
 }
 
-/// The sizes of all parts.
+/// The numbers of components of all parts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sizes {
     pub(super) coordinates: usize,
-    /// Quasi-velocities of the state, and in total.
+    /// The number of quasi-velocities in the state, and, in `whole`, their total number.
     pub(super) velocities: usize,
     whole: usize,
-    /// Rows of the mass matrix; 0 for a large tree.
+    /// The number of rows of the mass matrix; 0 for a large tree.
     mass: usize,
     positions: usize,
     kept: usize,
-    /// Conditions on the velocities.
+    /// The number of conditions on the velocities.
     conditions: usize,
 }
 
-/// The parts at a state.
+/// The parts, evaluated at a state.
 pub(super) struct Evaluated {
     /// ∂f/∂y
     pub(super) jacobian: Matrix<f64>,
@@ -117,7 +122,7 @@ pub(super) struct Evaluated {
 }
 
 impl Linearizer {
-    /// Linearizes equations in independent quasi-velocities, with the parameters that are inputs.
+    /// Linearizes equations in independent quasi-velocities; `inputs` names the parameters that are inputs.
     ///
     /// # Errors
     /// [`AnalysisError::UnknownComponent`] for an input that is not a parameter; otherwise as
@@ -131,9 +136,8 @@ impl Linearizer {
         Linearizer::of(equations.compile_for(options)?, equations, leaf, None, inputs)
     }
 
-    /// Linearizes equations with multipliers, which are regular wherever the constraints are: no choice of
-    /// independent velocities is regular everywhere; ẏ, for example, is not at the lowest point of a
-    /// circle.
+    /// Linearizes equations with multipliers, which are regular wherever the constraints are. No choice of
+    /// independent velocities is regular everywhere: ẏ, for example, is not at the lowest point of a circle.
     ///
     /// # Errors
     /// As [`new`](Linearizer::new).
@@ -147,7 +151,7 @@ impl Linearizer {
         Linearizer::of(motion, multipliers.equations(), leaf, Some(multipliers), inputs)
     }
 
-    /// As [`new`](Linearizer::new), with `multipliers` if these hold conditions on the velocities.
+    /// As [`new`](Linearizer::new), with `multipliers` if these enforce conditions on the velocities.
     fn of<'g>(
         motion: Motion,
         equations: &Equations<'g>,
@@ -236,7 +240,7 @@ impl Linearizer {
         })
     }
 
-    /// Names of the components of the state.
+    /// The names of the components of the state.
     pub fn names(&self) -> &[String] {
         self.motion.names()
     }
@@ -246,7 +250,7 @@ impl Linearizer {
         self.sizes.coordinates..self.sizes.coordinates + self.sizes.velocities
     }
 
-    /// The names of the coordinates on which no rates depend but those of coordinates among them.
+    /// The names of the cyclic coordinates, on which no rates depend except those of cyclic ones.
     pub fn cyclic(&self) -> Vec<String> {
         self.cyclic.iter().map(|&i| self.motion.names()[i].clone()).collect()
     }
@@ -279,7 +283,7 @@ impl Linearizer {
         }
     }
 
-    /// Checks that equilibria can be searched for.
+    /// Checks that a search for equilibria is possible.
     ///
     /// # Errors
     /// [`AnalysisError::DependsOnTime`], [`AnalysisError::LeafUnknown`].
@@ -297,8 +301,8 @@ impl Linearizer {
     ///
     /// # Errors
     /// [`AnalysisError::DependsOnTime`]; [`AnalysisError::LeafUnknown`] if Newton's method would need
-    /// functions of the coordinates that are not known to be kept, and the state itself is not steady;
-    /// otherwise as [`SteadyMotion::near`].
+    /// functions of the coordinates that motions keep constant but that are not known, and the state itself
+    /// is not steady; otherwise as [`SteadyMotion::near`].
     pub(super) fn find(
         &mut self,
         t: f64,
@@ -341,13 +345,14 @@ impl Linearizer {
         SteadyMotion::on_surface(&mut motion, t, guess, options, |y| self.surface_at(t, y, Some(&levels)))
     }
 
-    /// The values of the kept functions, after those of the positions.
+    /// The values of the position constraints, followed by those of the kept functions and the conditions on
+    /// velocities.
     pub(super) fn levels(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, AnalysisError> {
         Ok(self.surface_at(t, state, None)?.0)
     }
 
-    /// The positions, the kept functions minus their `levels`, and the conditions on velocities, with their
-    /// slopes.
+    /// The position constraints, the kept functions minus their `levels`, and the conditions on velocities,
+    /// with their slopes.
     pub(super) fn surface_at(
         &mut self,
         t: f64,
@@ -424,7 +429,7 @@ impl Linearizer {
     }
 
     /// The dimension of the family of equilibria or steady motions through a state on its leaf, to first
-    /// order: that of the kernel of the slopes of the rates `kept`, with respect to the components
+    /// order: the dimension of the kernel of the slopes of the rates `kept` with respect to the components
     /// `free`.
     pub(super) fn family(
         &mut self,
@@ -445,5 +450,5 @@ impl Linearizer {
     }
 }
 
-/// Singular values below this fraction of the largest are zeros.
+/// Singular values below this fraction of the largest count as zero.
 const FAMILY: f64 = 1e-8;

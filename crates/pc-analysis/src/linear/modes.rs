@@ -11,8 +11,8 @@ use crate::stability::spectrum::{Eigenvalue, Spectrum};
 pub struct Mode {
     /// λ
     pub eigenvalue: Eigenvalue,
-    /// v, as pairs of real and imaginary part of each component; the largest component is 1. None for a
-    /// multiple zero beyond the kernel: deviations grow with a power of t there.
+    /// v, as a pair of real and imaginary part for each component; the largest component is 1. None for a
+    /// multiple zero eigenvalue beyond the dimension of the kernel: there deviations grow with a power of t.
     pub vector: Option<Vec<(f64, f64)>>,
 }
 
@@ -45,8 +45,8 @@ pub(super) fn modes(matrix: &Matrix<f64>, spectrum: &Spectrum) -> Result<Vec<Mod
         .collect())
 }
 
-/// Vectors that span the kernel, of the given dimension, in echelon form: they are independent of the choice
-/// of a basis.
+/// Vectors that span the kernel, of the given dimension, in echelon form, so that they do not depend on the
+/// choice of a basis.
 fn kernel(matrix: &Matrix<f64>, dimension: usize) -> Result<Vec<Vec<f64>>, AnalysisError> {
     let n = matrix.rows();
     let basis = SingularValues::of(matrix)?.kernel(n - dimension);
@@ -80,7 +80,7 @@ fn real(vector: Vec<(f64, f64)>) -> Vec<f64> {
     vector.into_iter().map(|(re, _)| re).collect()
 }
 
-/// Components this small, in a vector of length about 1, are rounding.
+/// Components this small, in a vector of length about 1, are treated as rounding errors.
 const ROUNDING: f64 = 1e-13;
 
 /// The vector scaled so that its largest component, the first among equals, is 1.

@@ -1,4 +1,4 @@
-//! Reactions near a state, from the accelerations there.
+//! Reactions near a state, determined from the accelerations there.
 
 use pc_expr::{Backend, Evaluator, Inputs, Program};
 use pc_mech::{Expr, LeastSquares, Matrix, Multipliers};
@@ -8,12 +8,12 @@ use crate::linear::leaf::ZERO;
 use crate::numeric::dense::product;
 use crate::numeric::program::values;
 
-/// The reactions λ of M η̇ = r + Cᵀ λ with their derivatives, given η̇ with its derivatives. The forces
-/// F = M η̇ − r − Cᵀ λ vanish near a state as at it, so that
+/// The reactions λ of M η̇ = r + Cᵀ λ with their derivatives, given η̇ with its derivatives. The forces F = M
+/// η̇ − r − Cᵀ λ vanish at a state and near it, so that
 ///
 ///   Cᵀ λ = M η̇ − r,   Cᵀ δλ = (∂F/∂y) δy + M δη̇ + (∂F/∂u) δu,
 ///
-/// k equations each, of rank m if the constraints are independent: these alone determine λ.
+/// These are k equations each, of rank m if the constraints are independent; they alone determine λ.
 #[derive(Clone, Debug)]
 pub(super) struct Reactions {
     /// C (m × k), then M η̇ − r, from (t, (y, η̇), p).
@@ -43,7 +43,7 @@ impl Reactions {
         outputs.filter(|(_, f)| reacts(f)).map(|(name, _)| name.clone()).collect()
     }
 
-    /// The reactions of `multipliers` in these `outputs`; `of_state` are (t, y, p), and `inputs` are some of
+    /// The reactions of `multipliers` in these `outputs`; `of_state` is (t, y, p), and `inputs` are some of
     /// the parameters.
     pub(super) fn new<'g>(
         multipliers: &Multipliers<'g>,
@@ -72,8 +72,8 @@ impl Reactions {
         })
     }
 
-    /// λ and its derivatives at (t, y), a state with these names, for η̇ with these derivatives with respect to the
-    /// state and by the inputs.
+    /// λ and its derivatives at (t, y), a state with these names, for the given η̇ with its derivatives with
+    /// respect to the state and the inputs.
     ///
     /// # Errors
     /// [`AnalysisError::ReactionsUndetermined`] if the constraints are dependent.

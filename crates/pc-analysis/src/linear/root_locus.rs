@@ -1,12 +1,13 @@
-//! Eigenvalues over a parameter.
+//! Eigenvalues as functions of a parameter.
 
 use crate::linear::assignment::cheapest;
 use crate::stability::spectrum::Eigenvalue;
 
 /// The eigenvalues of a linearization for values of a parameter, each followed as a branch.
 ///
-/// From one value to the next, eigenvalues continue the branches to whose extrapolations they are nearest,
-/// by the sum of the roots of the distances; where two branches meet, either may continue as either.
+/// From one value to the next, eigenvalues continue the branches to whose extrapolations they are nearest, as
+/// measured by the sum of the square roots of the distances; where two branches meet, their continuations may
+/// be exchanged.
 ///
 /// ```
 /// use pc_analysis::{Eigenvalue, RootLocus};
@@ -30,7 +31,7 @@ pub struct RootLocus {
     branches: Vec<Vec<Option<Eigenvalue>>>,
 }
 
-/// A number of eigenvalues that differs from the number of branches.
+/// The number of eigenvalues differs from the number of branches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{found} eigenvalues continue {expected} branches")]
 pub struct BranchCount {
@@ -41,7 +42,7 @@ pub struct BranchCount {
 }
 
 impl RootLocus {
-    /// Adds the eigenvalues for the next value of the parameter; none if there is no linearization.
+    /// Adds the eigenvalues for the next value of the parameter, `None` if there is no linearization.
     ///
     /// # Errors
     /// [`BranchCount`] if there are more or fewer than before; the locus is then unchanged.
@@ -73,7 +74,8 @@ impl RootLocus {
         Ok(())
     }
 
-    /// Extrapolated along the line through the last two, or equal to the last one.
+    /// The eigenvalue to which a branch leads: extrapolated along the line through the last two, or equal to
+    /// the last one.
     fn leads_to(&self, branch: &[Option<Eigenvalue>], value: f64) -> Option<Eigenvalue> {
         let mut known = branch.iter().zip(&self.values).rev();
         let (last, at) = known.find_map(|(lambda, &p)| Some(((*lambda)?, p)))?;
@@ -91,7 +93,7 @@ impl RootLocus {
         &self.values
     }
 
-    /// Each branch, an eigenvalue for each value.
+    /// The branches, each with an eigenvalue for each value of the parameter.
     pub fn branches(&self) -> &[Vec<Option<Eigenvalue>>] {
         &self.branches
     }

@@ -7,7 +7,7 @@ use pc_mech::Matrix;
 use crate::linear::leaf::independent_rows;
 use crate::numeric::dense::{product, solve};
 
-/// M q̈ + G q̇ + K q = F u, small deviations q of coordinates whose velocities are independent.
+/// M q̈ + G q̇ + K q = F u, for small deviations q of coordinates whose velocities are independent.
 ///
 /// With M η̇ = r, q̇ = D q + B η and η̇ = A_q q + A_η η + B_u u near the state,
 ///
@@ -21,11 +21,11 @@ pub struct SecondOrder {
     pub coordinates: Vec<String>,
     /// M_q, symmetric.
     pub mass: Matrix<f64>,
-    /// G, the matrix of the velocities.
+    /// G, the matrix that multiplies the velocities.
     pub velocity: Matrix<f64>,
-    /// K, the matrix of the coordinates.
+    /// K, the matrix that multiplies the coordinates.
     pub stiffness: Matrix<f64>,
-    /// F, the matrix of the inputs.
+    /// F, the matrix that multiplies the inputs.
     pub input: Matrix<f64>,
 }
 
@@ -35,7 +35,7 @@ pub enum NoSecondOrder {
     /// The velocities change at the state.
     #[error("the state is not steady")]
     NotSteady,
-    /// The mass matrix is not written out.
+    /// The mass matrix is not written out, since the tree is large.
     #[error("the mass matrix of a large tree is not written out")]
     LargeTree,
     /// The equations depend on more coordinates than there are velocities, as may happen under nonholonomic
@@ -52,9 +52,9 @@ pub enum NoSecondOrder {
     /// The frame has fewer coordinates than quasi-velocities.
     #[error("only {coordinates} coordinates have independent velocities, of {velocities} quasi-velocities")]
     TooFewCoordinates {
-        /// Coordinates with independent velocities.
+        /// The number of coordinates with independent velocities.
         coordinates: usize,
-        /// Quasi-velocities.
+        /// The number of quasi-velocities.
         velocities: usize,
     },
     /// First-order states act on the velocities.
@@ -65,7 +65,7 @@ pub enum NoSecondOrder {
     },
 }
 
-/// A row depends on others if less than this fraction of it is independent of them.
+/// A row is linearly dependent on others if less than this fraction of it is independent of them.
 const ZERO: f64 = 1e-10;
 
 /// The reduced state: its components, and all components of the state in terms of them.
@@ -85,14 +85,14 @@ pub(super) struct Parts<'a> {
     pub(super) names: &'a [String],
     /// The range of its quasi-velocities.
     pub(super) quasi_velocities: Range<usize>,
-    /// ∂f/∂y, and the derivative by the reduced state.
+    /// ∂f/∂y, and the derivative of f with respect to the reduced state.
     pub(super) jacobian: &'a Matrix<f64>,
     pub(super) moved: &'a Matrix<f64>,
     /// ∂f/∂u
     pub(super) by_inputs: &'a Matrix<f64>,
-    /// M of all quasi-velocities of the state.
+    /// M for all quasi-velocities of the state.
     pub(super) mass: &'a Matrix<f64>,
-    /// The cyclic coordinates, and those whose rates depend on moving ones.
+    /// The cyclic coordinates, and those of them whose rates depend on moving ones.
     pub(super) cyclic: &'a [usize],
     pub(super) acted_on: &'a [usize],
     /// The reduced state without cyclic coordinates.
@@ -150,8 +150,8 @@ impl Parts<'_> {
         })
     }
 
-    /// The independent coordinates and enough cyclic ones to match the velocities, in the order of the state,
-    /// if their velocities are independent.
+    /// The independent coordinates and enough cyclic ones to match the velocities, in the order of the state;
+    /// none if these are too few or their velocities are dependent.
     fn completed(&self, independent: &[usize]) -> Option<Vec<usize>> {
         let (l, jacobian) = (self.reduced.velocities, self.jacobian);
         let row = |i: usize| self.velocity_row(i);
@@ -195,14 +195,15 @@ impl Parts<'_> {
         independent_rows(&all, ZERO * largest(&rows)).len()
     }
 
-    /// The rate of a coordinate in terms of the independent quasi-velocities.
+    /// The coefficients of the independent quasi-velocities in the rate of a coordinate.
     fn velocity_row(&self, i: usize) -> Vec<f64> {
         let first = self.reduced.coordinates;
         (first..first + self.reduced.velocities).map(|column| self.moved[(i, column)]).collect()
     }
 }
 
-/// The largest entry. Accelerations are not among them: those of stiff springs are larger by orders of magnitude.
+/// The largest entry. Rows of accelerations are not included: those of stiff springs are larger by orders of
+/// magnitude.
 fn largest(rows: &[Vec<f64>]) -> f64 {
     rows.iter().flatten().fold(0.0f64, |size, x| size.max(x.abs()))
 }

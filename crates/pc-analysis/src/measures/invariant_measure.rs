@@ -1,10 +1,11 @@
-//! Phase volume: its growth, and the measures that are invariant.
+//! The growth of phase volume, and the measures that are invariant.
 
 use pc_mech::{Expr, Graph, Matrix, Number, System, determinant};
 
 use crate::error::AnalysisError;
 
-/// An invariant measure N dx dy with N = Π ψ_i^c_i, ψ_i functions of (t, x, y) and c_i rational.
+/// An invariant measure N dx dy with N = Π ψ_i^c_i, where the ψ_i are functions of (t, x, y) and the c_i are
+/// rational.
 #[derive(Clone, Debug)]
 pub struct InvariantMeasure<'g> {
     /// The ψ_i with their powers c_i, none of them 0.
@@ -17,8 +18,8 @@ impl<'g> InvariantMeasure<'g> {
         self.density_to(Number::ONE)
     }
 
-    /// The measure from a relation between the growth rates ψ̇_i/ψ_i, one column each, and the
-    /// divergence in the last column.
+    /// The measure that follows from a linear relation between the growth rates ψ̇_i/ψ_i, one column each,
+    /// and the divergence in the last column.
     pub(crate) fn of_relation(
         graph: &'g Graph,
         factors: &[Expr<'g>],
@@ -53,7 +54,7 @@ fn states<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
 }
 
 /// The divergence ∂ẋ_i/∂x_i + ∂ẏ_s/∂y_s + ∂ż/∂z of the motion (10), (11): the rate at which phase volume dx
-/// dy grows, in terms of (t, x, y). Under constraints, (34), it is that of their [free
+/// dy grows, in terms of (t, x, y). Under constraints (34) it is the divergence of their [free
 /// system](pc_nonholo::Constrained::free_system).
 ///
 /// # Errors
@@ -74,9 +75,9 @@ pub fn divergence<'g>(free: &System<'g>) -> Result<Expr<'g>, AnalysisError> {
 /// The invariant measure of the motion (10), (11) of a system whose density is a product of powers of
 /// `factors`, functions of (t, x, y) that are not zero, if there is one: ψ̇_i/ψ_i c_i + divergence = 0,
 /// solved for rational c_i and proved. Without `factors` the coordinates, their sines and cosines, det b, the
-/// entries of the mass matrix and its determinant are tried: with n = k and forces that have a potential dx
-/// dy/det b is Liouville's dx dp, by the momenta p = ∂L/∂ẋ, y = bᵀp. Under constraints, (34), it is that of
-/// their [free system](pc_nonholo::Constrained::free_system).
+/// entries of the mass matrix and its determinant are tried: if n = k and the forces have a potential, dx
+/// dy/det b is Liouville's dx dp in the momenta p = ∂L/∂ẋ, y = bᵀp. Under constraints (34) it is the measure
+/// of their [free system](pc_nonholo::Constrained::free_system).
 ///
 /// # Errors
 /// [`LagrangianError::NotQuadratic`](pc_mech::LagrangianError::NotQuadratic) if the equations have no closed form.
@@ -148,8 +149,8 @@ pub(crate) fn simple_factors<'g>(system: &System<'g>, parts: &[Expr<'g>]) -> Vec
     moving.flat_map(|&x| [x, x.sin(), x.cos()]).collect()
 }
 
-/// Simple factors: those of det b if b is square, the diagonal of the mass matrix and its determinant, as
-/// far as they are not constant.
+/// Factors to try: the coordinates with their sines and cosines, the factors of det b, the diagonal of the
+/// mass matrix and its determinant, as far as they are not constant.
 pub(crate) fn candidates<'g>(system: &System<'g>) -> Result<Vec<Expr<'g>>, AnalysisError> {
     let graph = system.graph();
     let equations = system.poincare()?;

@@ -1,4 +1,4 @@
-//! The invariant measure of a motion: Liouville's, or one that is found.
+//! The invariant measure of a motion: Liouville's, or one found by a search.
 
 use pc_mech::{Expr, Graph, Matrix, System};
 
@@ -7,66 +7,69 @@ use crate::measures::invariant_measure::{
     InvariantMeasure, candidates, determinants_of_blocks, invariant_measure, simple_factors,
 };
 
-/// The most free quasi-velocities of motions for which a measure is searched, if no theorem gives one.
+/// The largest number of free quasi-velocities of a motion for which a measure is sought if no theorem gives
+/// one.
 const MOST_VELOCITIES: usize = 6;
 
-/// The most factors of a density that are tried together.
+/// The largest number of factors of a density that are tried together.
 const MOST_FACTORS: usize = 60;
 
-/// The longest equations of such motions, in operations written out; a search then takes some tenths of a
-/// second.
+/// The greatest length of the equations of such a motion, in operations when written out; a search then takes
+/// some tenths of a second.
 const LONGEST: u32 = 4_000;
 
 /// The result of a search for an invariant measure.
 #[derive(Clone, Debug)]
 pub enum MeasureSearch<'g> {
-    /// The motion keeps this one.
+    /// This measure is invariant.
     Found(PhaseMeasure<'g>),
     /// None was found.
     None,
-    /// It depends on forces that are computed outside.
+    /// It depends on forces that are computed outside the model.
     External,
     /// No theorem gives one, and the equations are too long to search.
     TooLong,
 }
 
-/// A measure in the phase space of (x, y) and first-order states that a motion keeps.
+/// A measure on the phase space of (x, y) and the first-order states that is invariant under the motion.
 #[derive(Clone, Debug)]
 pub struct PhaseMeasure<'g> {
-    /// Whether it is Liouville's, that of a holonomic system by its frame, whatever the Lagrangian.
+    /// Whether it is Liouville's, which the frame of a holonomic system determines whatever the Lagrangian.
     pub liouville: bool,
-    /// N of N dx dy, positive at the start; none if 1/det b or det(∂f/∂x_D)/det b_I is not a short expression.
+    /// The density N of N dx dy, positive at the start; none if 1/det b or det(∂f/∂x_D)/det b_I is not a short
+    /// expression.
     pub density: Option<Expr<'g>>,
-    /// N det M of N det M dx dη, M = ∂²L/∂η∂η; none if it is not a short expression.
+    /// The density N det M of N det M dx dη, with M = ∂²L/∂η∂η; none if it is not a short expression.
     pub in_velocities: Option<Expr<'g>>,
     /// The momenta at whose zeros N is zero or infinite.
     pub singular: Vec<Expr<'g>>,
-    /// Whether momenta or ẋ contain a sign, a step or an angle, which may jump: the measure is kept where they do not.
+    /// Whether momenta or ẋ contain a sign, a step or an angle, which may jump: the measure is invariant where they do
+    /// not.
     pub jumps: bool,
 }
 
 impl<'g> MeasureSearch<'g> {
-    /// The measure of the motion (10), (11) of a system; under constraints, of their [free
+    /// The measure of the motion (10), (11) of a system; under constraints, that of their [free
     /// system](pc_nonholo::Constrained::free_system).
     ///
     /// Where forces other than those of L are functions of the position, or gyroscopic, phase volume grows
-    /// at the rate η_r (∂b_ir/∂x_i + c_rs^s) + ∂b_i0/∂x_i + c_0s^s, for all L: by (10) the terms of H
-    /// cancel, and those of c_rs^m by its antisymmetry. N = 1 is a density if this vanishes. With n = k and
-    /// rank b = k it is N = 1/det b, by which dx dy is Liouville's dx dp: y = bᵀp. Where n − k functions
-    /// f(t, x) are constant, with any choice of as many dependent coordinates x_D and the others x_I, it is
-    /// N = det(∂f/∂x_D)/det b_I: Liouville's on each surface f = const. If no f are known, N is sought as a
-    /// product of powers of coordinates, their sines and cosines. For dx dη it is multiplied by det M.
-    /// `positions` are f of a holonomic system, and declared integrals of the place are others; `None` means
-    /// that it is not holonomic.
+    /// at the rate η_r (∂b_ir/∂x_i + c_rs^s) + ∂b_i0/∂x_i + c_0s^s, for all L: in (10) the terms with H
+    /// cancel, and those with c_rs^m by its antisymmetry. N = 1 is a density if this vanishes. If n = k and
+    /// rank b = k, the density is N = 1/det b, with which N dx dy is Liouville's dx dp: y = bᵀp. If n − k
+    /// functions f(t, x) are constant, then for any choice of as many dependent coordinates x_D, x_I being
+    /// the others, the density is N = det(∂f/∂x_D)/det b_I: Liouville's on each surface f = const. If no f
+    /// are known, N is sought as a product of powers of coordinates, their sines and cosines. For dx dη it is
+    /// multiplied by det M. `positions` are functions f of a holonomic system, in addition to declared
+    /// integrals that depend on the position alone; `None` means that the system is not holonomic.
     ///
     /// Otherwise a density with these factors and those of [`invariant_measure`] is sought, then one that has
-    /// momenta among its factors as well; this is left out for more than six quasi-velocities and for long
-    /// equations.
+    /// momenta among its factors as well; this search is omitted for more than six quasi-velocities and for
+    /// long equations.
     ///
-    /// `at` are values of time, state and parameters, where N is positive.
+    /// `at` has values of time, state and parameters at which N is positive.
     ///
     /// # Errors
-    /// The errors of the equations (9).
+    /// The errors in deriving equations (9).
     ///
     /// ```
     /// use pc_analysis::MeasureSearch;
@@ -140,8 +143,8 @@ fn jumps(system: &System<'_>) -> bool {
     parts.iter().any(|&part| system.graph().applies(part, &state, |function| !function.is_continuous()))
 }
 
-/// The density with which (10), (11) keep phase volume for any Lagrangian; `Some(None)` if it is not a
-/// short expression.
+/// The density whose measure (10), (11) leave invariant for any Lagrangian; `Some(None)` if it is not a short
+/// expression.
 fn of_the_frame<'g>(system: &System<'g>, positions: &[Expr<'g>]) -> Option<Option<Expr<'g>>> {
     if !system.states().is_empty() || has_resistance(system) {
         return None;
@@ -157,8 +160,8 @@ fn of_the_frame<'g>(system: &System<'g>, positions: &[Expr<'g>]) -> Option<Optio
     of_surfaces(system, positions, &growth).or_else(|| of_factors(system, growth).map(Some))
 }
 
-/// det(∂f/∂x_D)/det b_I for the first functions f that motions keep, those of `positions` and integrals of
-/// the place; `Some(None)` if it is not a short expression.
+/// det(∂f/∂x_D)/det b_I for the first independent functions f that motions keep constant, among `positions`
+/// and the integrals that depend on the position alone; `Some(None)` if it is not a short expression.
 fn of_surfaces<'g>(
     system: &System<'g>,
     positions: &[Expr<'g>],
@@ -207,7 +210,7 @@ fn of_factors<'g>(system: &System<'g>, growth: Vec<Expr<'g>>) -> Option<Expr<'g>
     Some(InvariantMeasure::of_relation(graph, &factors, &columns)?.density())
 }
 
-/// The first columns that are independent at almost all positions.
+/// The indices of the first columns that are independent at almost all positions.
 fn independent_columns<'g>(graph: &'g Graph, rows: &[Vec<Expr<'g>>]) -> Vec<usize> {
     let mut kept: Vec<usize> = Vec::new();
     for column in 0..rows.first().map_or(0, Vec::len) {
@@ -219,7 +222,8 @@ fn independent_columns<'g>(graph: &'g Graph, rows: &[Vec<Expr<'g>>]) -> Vec<usiz
     kept
 }
 
-/// Whether ∂Q_s/∂η_r + ∂Q_r/∂η_s is not identically zero: by the symmetry of M the trace of ∂Q/∂y vanishes if it is.
+/// Whether ∂Q_s/∂η_r + ∂Q_r/∂η_s is not identically zero; if it is zero, the trace of ∂Q/∂y vanishes by the symmetry
+/// of M.
 fn has_resistance(system: &System<'_>) -> bool {
     let (graph, eta) = (system.graph(), system.quasi_velocities());
     let slopes: Vec<_> = system.forces().iter().map(|&q| graph.gradient(q, eta)).collect();
@@ -227,7 +231,7 @@ fn has_resistance(system: &System<'_>) -> bool {
     (0..k).any(|s| (0..=s).any(|r| !(slopes[s][r] + slopes[r][s]).is_zero()))
 }
 
-/// ∂b_ir/∂x_i + c_rs^s, r = 0..k, which X_r N/N cancels for a density N.
+/// ∂b_ir/∂x_i + c_rs^s for r = 0..k; N is a density if X_r N/N cancels these.
 fn growth<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
     let (graph, frame, structure) = (system.graph(), system.frame(), system.structure());
     let mut traces = vec![Vec::new(); frame.operators() + 1];
@@ -251,15 +255,15 @@ fn growth<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
     traces.into_iter().enumerate().map(of).collect()
 }
 
-/// The determinant of a square matrix up to its sign, as the product of those of its blocks; `None` if one is
-/// not a short expression.
+/// The determinant of a square matrix up to its sign, as the product of the determinants of its blocks;
+/// `None` if one of them is not a short expression.
 fn product_of_blocks<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Expr<'g>> {
     let blocks = determinants_of_blocks(graph, matrix);
     let product = blocks.iter().try_fold(Expr::ONE, |product, block| Some(product * (*block)?))?;
     (!product.is_zero()).then_some(product)
 }
 
-/// A measure that is found, preferably with positive density.
+/// The measure that a search for its factors finds, preferably one without momenta among them.
 fn found<'g>(system: &System<'g>) -> Result<Option<InvariantMeasure<'g>>, AnalysisError> {
     let known = |error| match error {
         AnalysisError::Mech(error) if error.is_not_quadratic() => Ok(None),
@@ -275,7 +279,7 @@ fn found<'g>(system: &System<'g>) -> Result<Option<InvariantMeasure<'g>>, Analys
     }
 }
 
-/// The density without constant factors, positive at the values `at`.
+/// The density without constant factors, with its sign chosen so that it is positive at the values `at`.
 fn positive<'g>(system: &System<'g>, density: Expr<'g>, at: &[(Expr<'g>, f64)]) -> Expr<'g> {
     let graph = system.graph();
     let variables: Vec<Expr<'g>> = [system.frame().time()]

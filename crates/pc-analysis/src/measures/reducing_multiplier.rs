@@ -6,29 +6,29 @@ use pc_nonholo::Voronets;
 use crate::error::AnalysisError;
 use crate::measures::invariant_measure::invariant_measure;
 
-/// A time in which a Chaplygin system is a Lagrangian one.
+/// A new time with which a Chaplygin system becomes a Lagrangian one.
 #[derive(Clone, Debug)]
 pub struct ReducingMultiplier<'g> {
-    /// N of the new time τ, dτ = N dt: a positive function of the independent coordinates.
+    /// N in dτ = N dt, where τ is the new time: a positive function of the independent coordinates.
     pub multiplier: Expr<'g>,
-    /// The system in that time: the independent coordinates with their rates x_i' by τ as velocities, and
-    /// L* = (θ + U)(x, N x').
+    /// The system in that time: the independent coordinates, with their rates x_i' with respect to τ as
+    /// velocities, and L* = (θ + U)(x, N x').
     pub system: System<'g>,
 }
 
 impl<'g> ReducingMultiplier<'g> {
-    /// The reducing multiplier of a Chaplygin system without forces other than potential ones, if one is found: with
-    /// dτ = N dt the equations (35) become
+    /// The reducing multiplier of a Chaplygin system that has only potential forces, if one is found: with dτ = N dt
+    /// the equations (35) become
     ///
     ///   d/dτ ∂L*/∂x_i' = ∂L*/∂x_i,   L*(x, x') = (θ + U)(x, N x'),
     ///
-    /// those of Lagrange, without a term of the constraints. Their volume dx dP, P = N p, is N^l dx dp, and
-    /// with respect to the old time N^(l−1) dx dp is invariant: N is sought as a root of the density of an
-    /// invariant measure. With two degrees of freedom and T quadratic in the velocities there is one
-    /// exactly if there is such a measure [Chaplygin 1911]; else N is given only if the equations are
-    /// proved to be the same.
+    /// which are Lagrange's, without a term from the constraints. Their volume dx dP, P = N p, is N^l dx dp,
+    /// and with respect to the old time N^(l−1) dx dp is invariant: N is sought as a root of the density of
+    /// an invariant measure. With two degrees of freedom and T quadratic in the velocities a multiplier
+    /// exists exactly if there is such a measure [Chaplygin 1911]; otherwise N is given only if the equations
+    /// are proved to be the same.
     ///
-    /// None for systems that are not [Chaplygin's](Voronets::is_chaplygin) or depend on time.
+    /// `None` for systems that are not [Chaplygin's](Voronets::is_chaplygin) or depend on time.
     ///
     /// # Errors
     /// [`LagrangianError::NotQuadratic`](pc_mech::LagrangianError::NotQuadratic) if the equations have no closed form.

@@ -18,10 +18,10 @@ pub(crate) fn eigenvalues(matrix: &Matrix<f64>) -> Result<Vec<(f64, f64)>, MechE
     Ok(values.iter().map(|value| (value.re, value.im)).collect())
 }
 
-/// An eigenvalue, as a pair of real and imaginary part, with the components of an eigenvector, likewise.
+/// An eigenvalue, as a pair of real and imaginary part, with the components of an eigenvector as such pairs.
 pub(crate) type Eigenpair = ((f64, f64), Vec<(f64, f64)>);
 
-/// The eigenvalues of a square matrix with an eigenvector each.
+/// The eigenvalues of a square matrix, each with an eigenvector.
 ///
 /// # Errors
 /// As [`eigenvalues`].
@@ -45,7 +45,7 @@ pub(crate) fn solve(a: &Matrix<f64>, b: &Matrix<f64>) -> Matrix<f64> {
     Matrix::from_fn(b.rows(), b.columns(), |i, j| solution[(i, j)])
 }
 
-/// Eigenvalues of a symmetric matrix, rising, and orthonormal eigenvectors as columns.
+/// The eigenvalues of a symmetric matrix in ascending order, and orthonormal eigenvectors as columns.
 ///
 /// # Errors
 /// [`MatrixError::NoEigenvalues`] for a matrix with an entry that is not finite.

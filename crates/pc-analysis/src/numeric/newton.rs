@@ -5,10 +5,10 @@ use pc_mech::{Matrix, SingularValues};
 use crate::error::AnalysisError;
 use crate::numeric::dense::norm;
 
-/// The most halvings of a step before the iteration ends.
+/// The largest number of times that a step is halved before the iteration ends.
 const HALVINGS: usize = 40;
 
-/// The end of an iteration.
+/// The point at which an iteration ends, with the values there.
 #[derive(Clone, Debug)]
 pub(crate) struct Iterate {
     /// z
@@ -17,7 +17,7 @@ pub(crate) struct Iterate {
     pub(crate) values: Vec<f64>,
     /// ∂F/∂z
     pub(crate) slopes: Matrix<f64>,
-    /// Number of steps made.
+    /// The number of steps that were made.
     pub(crate) iterations: usize,
 }
 
@@ -38,8 +38,8 @@ impl Iterate {
     }
 
     /// The step of Levenberg and Marquardt, δ = −(JᵀJ + μ)⁻¹ Jᵀ F with μ = |J| |F|/(1 + |z|): near a family
-    /// of solutions it converges to the nearest one and converges quadratically, as Newton's does near a
-    /// single one (J. Fan, Y. Yuan, Computing 74, 2005, 23–39).
+    /// of solutions the iteration converges quadratically to the nearest one, as Newton's method does near a
+    /// single solution (J. Fan, Y. Yuan, Computing 74, 2005, 23–39).
     fn step(&self) -> Result<Vec<f64>, AnalysisError> {
         let factors = SingularValues::of(&self.slopes)?;
         let size = self.slopes.rows().max(self.slopes.columns()) as f64;
@@ -58,10 +58,10 @@ impl Iterate {
     }
 }
 
-/// Reduces |F(z)| from `start` on, until it no longer decreases or `most` steps are made. The caller decides
-/// whether the residual counts as zero.
+/// Reduces |F(z)|, beginning at `start`, until it no longer decreases or `most` steps have been made. The
+/// caller decides whether the residual counts as zero.
 ///
-/// `f` returns F(z) and ∂F/∂z; if it fails on the way, a shorter step is tried.
+/// `f` returns F(z) and ∂F/∂z; if it fails after a step, a shorter step is tried.
 ///
 /// # Errors
 /// The error of `f` at `start`.

@@ -4,10 +4,10 @@ use pc_expr::Evaluator;
 
 use crate::error::AnalysisError;
 
-/// The outputs of a program of (t, y, p), which takes the first of these parameters.
+/// The outputs of a program at (t, y, p); it uses as many of the first parameters as it has inputs for them.
 ///
 /// # Errors
-/// [`AnalysisError::Expr`] with the responsible expression, if one is not finite.
+/// [`AnalysisError::Expr`] with the responsible expression if an output is not finite.
 pub(crate) fn values(
     program: &mut Evaluator,
     t: f64,

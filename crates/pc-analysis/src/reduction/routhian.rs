@@ -22,14 +22,15 @@ pub struct Routhian<'g> {
     pub rates: Vec<Expr<'g>>,
     /// R.
     pub routhian: Expr<'g>,
-    /// The system of the other coordinates, R its Lagrangian and p_c among its parameters; none if all are cyclic.
+    /// The system of the other coordinates, with R as its Lagrangian and p_c among its parameters; none if all
+    /// coordinates are cyclic.
     pub system: Option<System<'g>>,
 }
 
 impl<'g> Routhian<'g> {
-    /// The Routhian of a system, in the velocities of its coordinates for any quasi-velocities. Coordinates
-    /// are cyclic if neither L nor any force depends on them and no force acts along them. The p_c have their
-    /// values where time and state have those `at` which the motion starts.
+    /// The Routhian of a system, in terms of the velocities of its coordinates whatever its quasi-velocities
+    /// are. Coordinates are cyclic if neither L nor any force depends on them and no force acts along them.
+    /// The values of p_c are those at the start of the motion, given `at` as values of time and state.
     ///
     /// None if no coordinate is cyclic, if there are not as many quasi-velocities as coordinates, for systems
     /// with first-order states or forces that are computed outside, and if L is not quadratic in the ẋ_c.
@@ -122,7 +123,7 @@ impl<'g> Routhian<'g> {
     }
 }
 
-/// The velocities for which affine functions have the values `symbols`, if these determine them.
+/// The velocities for which affine functions have the values `symbols`, if the functions determine them.
 fn solved<'g>(
     graph: &'g pc_mech::Graph,
     functions: &[Expr<'g>],

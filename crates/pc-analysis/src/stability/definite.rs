@@ -1,19 +1,20 @@
-//! Is some combination of quadratic forms positive definite?
+//! The search for a positive definite combination of quadratic forms.
 
 use pc_mech::{Matrix, MechError};
 
 use crate::numeric::dense::{norm, symmetric_eigenvalues};
 
-/// Steps of the search for each pair of forms; each reduces the volume by the factor e^(−1/(2K + 2)).
+/// The number of steps of the search for each pair of forms; each step reduces the volume by the factor
+/// e^(−1/(2K + 2)).
 const STEPS: usize = 1000;
 
 /// Numbers c, not all zero, for which W(c) = Σ c_i W_i is positive definite, with a least eigenvalue above
 /// `tolerance` |c|; `None` if there are none.
 ///
-/// The least eigenvalue φ(c) is concave, and vᵀ W_i v with its eigenvector v is a slope of it, since φ(c') ≤
-/// vᵀ W(c') v for all c'. So each step cuts off half of the remaining part of the unit ball (the ellipsoid
-/// method of D. B. Yudin and A. S. Nemirovski), until a c is found or the slope shows that φ nowhere exceeds
-/// the tolerance.
+/// The least eigenvalue φ(c) is concave, and the vᵀ W_i v, where v is its eigenvector, are a slope
+/// (supergradient) of it, since φ(c') ≤ vᵀ W(c') v for all c'. So each step cuts off half of the remaining
+/// part of the unit ball (the ellipsoid method of D. B. Yudin and A. S. Nemirovski), until a c is found or
+/// the slope shows that φ nowhere exceeds the tolerance.
 /// # Errors
 /// [`MatrixError::NoEigenvalues`](pc_mech::MatrixError::NoEigenvalues) if an entry is not finite.
 pub(crate) fn definite_combination(
@@ -49,7 +50,7 @@ pub(crate) fn definite_combination(
     Ok(None)
 }
 
-/// The result for one form or none.
+/// The result if there is one form or none.
 fn single(forms: &[Matrix<f64>], tolerance: f64) -> Result<Option<Vec<f64>>, MechError> {
     for sign in [1.0, -1.0].into_iter().take(2 * forms.len()) {
         if least_eigenvalue(forms, &[sign])?.0 > tolerance {
@@ -59,7 +60,7 @@ fn single(forms: &[Matrix<f64>], tolerance: f64) -> Result<Option<Vec<f64>>, Mec
     Ok(None)
 }
 
-/// φ(c) with its slope; +∞ on a space of dimension 0.
+/// φ(c) with a slope of it; φ = +∞ on a space of dimension 0.
 fn least_eigenvalue(forms: &[Matrix<f64>], c: &[f64]) -> Result<(f64, Vec<f64>), MechError> {
     let (values, vectors) = symmetric_eigenvalues(&combination(forms, c))?;
     let Some(&least) = values.first() else { return Ok((f64::INFINITY, vec![0.0; c.len()])) };
@@ -86,7 +87,8 @@ mod tests {
         Matrix::from_fn(2, 2, |i, j| entries[2 * i + j])
     }
 
-    /// diag(1, −1) + μ diag(−1, 2) is definite for ½ < μ < 1 only; with the second form diag(−1, 1) for no μ.
+    /// diag(1, −1) + μ diag(−1, 2) is definite only for ½ < μ < 1; with diag(−1, 1) as the second form, it is
+    /// definite for no μ.
     #[test]
     fn a_narrow_range_is_found_and_an_empty_one_refused() {
         let first = form([1.0, 0.0, 0.0, -1.0]);
@@ -97,7 +99,7 @@ mod tests {
         assert_eq!(none, None);
     }
 
-    /// A range of the width 10⁻⁶ between three forms.
+    /// Three forms whose combinations are definite only in a range of width 10⁻⁶.
     #[test]
     fn three_forms_are_combined() {
         let forms = [form([1.0, 0.0, 0.0, 0.0]), form([0.0, 1.0, 1.0, 0.0]), form([-1.0, 0.0, 0.0, 1e-6])];

@@ -6,15 +6,15 @@ use crate::numeric::dense::{norm, product};
 use crate::stability::spectrum::Spectrum;
 use crate::stability::steady_motion::SteadyMotion;
 
-/// Singular values of rows and bases of length one below this are zeros.
+/// Singular values below this count as zero, for rows and basis vectors of length one.
 const ZERO: f64 = 1e-10;
 
 /// A differential is independent of others if more than this fraction of it is orthogonal to them.
 const INDEPENDENT: f64 = 1e-8;
 
 /// The directions δy = E δz to the states that motions can reach: those that leave unchanged every function of the
-/// coordinates that all motions keep, such as the length of a quaternion or a constraint on positions. They are
-/// invariant under the first approximation, δż = Eᵀ A E δz.
+/// coordinates that is constant along all motions, such as the length of a quaternion or a constraint on
+/// positions. They are invariant under the first approximation, δż = Eᵀ A E δz.
 #[derive(Clone, Debug)]
 pub(super) struct Reachable {
     /// E, orthonormal, with a row for each component that is not cyclic.
@@ -24,8 +24,8 @@ pub(super) struct Reachable {
 }
 
 impl Reachable {
-    /// `normals` has a row ∂g/∂y over the whole state for each function g; `kept` are the places in it of the
-    /// components that are not cyclic.
+    /// `normals` has a row ∂g/∂y over the whole state for each function g; `kept` are the indices in the
+    /// state of the components that are not cyclic.
     pub(super) fn of(
         found: &SteadyMotion,
         kept: &[usize],
@@ -45,9 +45,9 @@ impl Reachable {
     /// The number k of neutral directions of a member of a family of steady motions: the first approximation has
     /// λ = 0 in k blocks of size 1 and otherwise negative real parts, and there are k integrals with independent
     /// differentials, so that on each nearby level the steady motion is isolated and asymptotically stable (I.
-    /// G. Malkin's theorem of the critical case of k zeros).
+    /// G. Malkin's theorem on the critical case of k zeros).
     ///
-    /// `differentials` are those of the integrals by the components that are not cyclic.
+    /// `differentials` are those of the integrals with respect to the components that are not cyclic.
     pub(super) fn neutral(&self, differentials: &[Vec<f64>]) -> Option<usize> {
         let spectrum = &self.spectrum;
         let &[count] = spectrum.zero_blocks() else { return None };

@@ -1,5 +1,5 @@
-//! Stability by the second variation of the energy under constant integrals (Routh; Chetaev's bundle of
-//! integrals; energy and Casimirs).
+//! Stability as shown by the second variation of the energy under constant integrals (Routh; Chetaev's bundle
+//! of integrals; energy and Casimirs).
 
 use pc_mech::{Equations, Expr, Graph, Matrix, MechError, SingularValues};
 
@@ -8,7 +8,8 @@ use crate::numeric::dense::{norm, product, symmetric_eigenvalues};
 use crate::stability::definite::{combination, definite_combination};
 use crate::stability::spectrum::Verdict;
 
-/// The second variation of F = H + λ_j I_j at a steady motion where dF = 0, on the deviations with dI_j = 0.
+/// The second variation of F = H + λ_j I_j at a steady motion where dF = 0, restricted to the deviations with
+/// dI_j = 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SecondVariation {
     /// The components of the state on which H or an integral depends; the others are ignored.
@@ -21,7 +22,7 @@ pub struct SecondVariation {
     pub eigenvalues: Vec<f64>,
     /// The absolute value up to which an eigenvalue counts as zero.
     pub tolerance: f64,
-    /// [`Stable`](Verdict::Stable) if it is definite, else [`Undecided`](Verdict::Undecided).
+    /// [`Stable`](Verdict::Stable) if it is definite, otherwise [`Undecided`](Verdict::Undecided).
     pub verdict: Verdict,
 }
 
@@ -34,7 +35,7 @@ impl SecondVariation {
     }
 }
 
-/// Values, slopes and curvatures of one function at the state.
+/// The slopes and curvatures of one function at the state.
 struct Expansion {
     gradient: Vec<f64>,
     hessian: Matrix<f64>,
@@ -46,14 +47,15 @@ impl SecondVariation {
     ///
     /// With d(H + λ_j I_j) = 0 there, λ by least squares, a second variation that is definite on the common
     /// kernel of the dI_j proves that the steady motion is stable: H + λ_j I_j ± κ (I_j − I_j(y))² has a
-    /// strict extremum at y for large κ. This does not need independent dI_j. If they depend on each other,
-    /// the λ_j are not determined, and values for which the form is definite are searched for.
+    /// strict extremum at y for large κ. This does not require the dI_j to be independent. If these are
+    /// linearly dependent, the λ_j are not determined, and a search is made for values for which the form is
+    /// definite.
     ///
-    /// Stability is that of the [variables](SecondVariation::variables). Redundant coordinates are variables:
-    /// their constraints, such as γ² = 1, must be among the integrals.
+    /// Stability means stability with respect to the [variables](SecondVariation::variables). Redundant
+    /// coordinates are variables: their constraints, such as γ² = 1, must be among the integrals.
     ///
     /// # Errors
-    /// [`AnalysisError::NotConserved`] if H or an integral changes along motions or depends on the time;
+    /// [`AnalysisError::NotConserved`] if H or an integral changes along motions or depends on time;
     /// [`ShapeError`](pc_mech::ShapeError); [`ExprError::UnboundSymbol`](pc_mech::ExprError::UnboundSymbol).
     pub fn at(equations: &Equations<'_>, state: &[f64]) -> Result<SecondVariation, AnalysisError> {
         SecondVariation::under(equations, equations.system().integrals(), state)
@@ -131,7 +133,7 @@ fn expand<'g>(
     Ok(Expansion { gradient: graph.evaluate(&slopes, values)?, hessian })
 }
 
-/// The solutions λ + μ of d(H + λ_j I_j) = 0, and the deviations on which they are tested.
+/// The solutions λ + μ of d(H + λ_j I_j) = 0, and the deviations on which the second variation is tested.
 struct Multipliers {
     /// λ by least squares.
     lambda: Vec<f64>,
@@ -146,7 +148,8 @@ struct Multipliers {
 }
 
 impl Multipliers {
-    /// `size` is that of the state; rounding of the state changes dH by d²H times as much.
+    /// The multipliers for these expansions. `size` is that of the state; a rounding error of the state
+    /// changes dH by d²H times that error.
     fn of(energy: &Expansion, integrals: &[Expansion], size: f64) -> Result<Multipliers, MechError> {
         let (n, count) = (energy.gradient.len(), integrals.len());
         let factors = SingularValues::of(&Matrix::from_fn(n, count, |i, j| integrals[j].gradient[i]))?;
@@ -207,7 +210,7 @@ fn decide(expansions: &[Expansion], size: f64) -> Result<SecondVariation, MechEr
     })
 }
 
-/// Numbers 1, c_1, c_2, … for which the combination of `forms` is definite, if they exist.
+/// Numbers 1, c_1, c_2, … for which the combination of `forms` is definite, if there are any.
 fn definite(forms: &[Matrix<f64>], largest: f64, tolerance: f64) -> Result<Option<Vec<f64>>, MechError> {
     let least_size = if largest > 0.0 { tolerance * largest } else { 1.0 };
     let sizes: Vec<f64> = forms.iter().map(|form| norm(&form.entries()).max(least_size)).collect();

@@ -11,11 +11,11 @@ use crate::numeric::dense::{eigenvalues, norm, product};
 pub enum Verdict {
     /// Neighbouring motions approach it: all real parts are negative (Lyapunov's first method).
     AsymptoticallyStable,
-    /// Neighbouring motions stay near: an integral has a strict extremum there (Lyapunov's second method).
+    /// Neighbouring motions stay close: an integral has a strict extremum there (Lyapunov's second method).
     Stable,
-    /// Some neighbouring motion leaves: a real part is positive (Lyapunov's first method).
+    /// Some neighbouring motion departs: a real part is positive (Lyapunov's first method).
     Unstable,
-    /// The method does not decide: the case is critical, as for the first approximation of every stable
+    /// The method does not decide: the case is critical, as it is in the first approximation of every stable
     /// conservative system.
     Undecided,
 }
@@ -40,15 +40,15 @@ pub struct Eigenvalue {
     pub imaginary: f64,
 }
 
-/// The eigenvalues of a matrix A, its zeros counted by rank and not by size.
+/// The eigenvalues of a matrix A, with its zero eigenvalues counted by ranks and not by their computed sizes.
 ///
 /// Any eigenvalue routine returns a zero of multiplicity m in one Jordan block as m numbers of size ε^(1/m)
 /// |A|, some with a positive real part. Zeros in blocks are the rule here: a family of steady motions gives A
-/// a kernel, and an angle whose speed changes along the family a block of two. Therefore they are split off
-/// by orthogonal transformations first: with A = U Σ Vᵀ of rank r, A and its compression to the image, the r
-/// × r matrix U_rᵀ A U_r, have the same eigenvalues except for n − r zeros; this is repeated until the rest
-/// is regular. The numbers split off are [`zero_blocks`](Spectrum::zero_blocks) (V. N. Kublanovskaya's
-/// method for the Jordan structure).
+/// a kernel, and an angle whose speed changes along the family gives a block of size two. Therefore they are
+/// split off by orthogonal transformations first: with A = U Σ Vᵀ of rank r, A and its compression to the
+/// image, the r × r matrix U_rᵀ A U_r, have the same eigenvalues except for n − r zeros; this is repeated
+/// until the rest is regular. The numbers split off are [`zero_blocks`](Spectrum::zero_blocks) (V. N.
+/// Kublanovskaya's method for the Jordan structure).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
     eigenvalues: Vec<Eigenvalue>,
@@ -58,10 +58,10 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
-    /// The spectrum of a square matrix A whose entries are known to `uncertainty` |A|; uncertainties below
-    /// 8 n ε, the rounding of the method, count as that.
+    /// The spectrum of a square matrix A whose entries are known to `uncertainty` |A|; uncertainties below 8
+    /// n ε, the rounding error of the method, are raised to that value.
     ///
-    /// Singular values up to `uncertainty` |A| are zeros. A real part counts as zero up to √`uncertainty`
+    /// Singular values up to `uncertainty` |A| count as zero. A real part counts as zero up to √`uncertainty`
     /// |A|, to which a double eigenvalue is determined.
     ///
     /// # Errors
@@ -92,8 +92,8 @@ impl Spectrum {
         &self.eigenvalues
     }
 
-    /// The numbers of Jordan blocks of the eigenvalue zero of size at least 1, 2, …; their sum is the
-    /// multiplicity of zero, the first the dimension of the kernel.
+    /// The numbers of Jordan blocks of size at least 1, 2, … that the eigenvalue zero has; their sum is the
+    /// multiplicity of zero, and the first is the dimension of the kernel.
     pub fn zero_blocks(&self) -> &[usize] {
         &self.zero_blocks
     }
@@ -103,22 +103,23 @@ impl Spectrum {
         self.tolerance
     }
 
-    /// The fraction of |A| to which the entries are known.
+    /// The uncertainty of the entries, as a fraction of |A|.
     pub(crate) fn uncertainty(&self) -> f64 {
         self.uncertainty
     }
 
-    /// The number of eigenvalues whose real part counts as zero, zeros among them.
+    /// The number of eigenvalues whose real part counts as zero, including zero eigenvalues.
     pub fn neutral(&self) -> usize {
         self.eigenvalues.iter().filter(|value| value.real.abs() <= self.tolerance).count()
     }
 
     /// [`Unstable`](Verdict::Unstable) if a real part is above the [tolerance](Spectrum::tolerance),
     /// [`AsymptoticallyStable`](Verdict::AsymptoticallyStable) if all are below minus the tolerance,
-    /// [`Undecided`](Verdict::Undecided) else.
+    /// [`Undecided`](Verdict::Undecided) otherwise.
     ///
-    /// Zeros never count as growth, in blocks or not: in the first approximation a block means growth with a
-    /// power of t, along a family of steady motions or not, and the motion itself need not follow.
+    /// Zero eigenvalues never count as growth, whether in blocks or not: in the first approximation a block
+    /// means growth with a power of t, which may lead along a family of steady motions, and the motion itself
+    /// need not grow.
     pub fn verdict(&self) -> Verdict {
         match self.eigenvalues.first() {
             Some(first) if first.real > self.tolerance => Verdict::Unstable,
@@ -128,8 +129,8 @@ impl Spectrum {
     }
 }
 
-/// A regular matrix with the eigenvalues of `matrix` other than zero, and the numbers of zeros split off at
-/// each step.
+/// A regular matrix that has the nonzero eigenvalues of `matrix`, and the number of zeros split off at each
+/// step.
 fn without_zeros(matrix: &Matrix<f64>, tolerance: f64) -> Result<(Matrix<f64>, Vec<usize>), MechError> {
     let (mut rest, mut blocks) = (matrix.clone(), Vec::new());
     loop {

@@ -35,22 +35,23 @@ pub struct SteadyOptions {
 }
 
 impl Default for SteadyOptions {
-    /// The cyclic coordinates of the equations, no fixed components, 100 steps, a relative residual of 10⁻¹².
+    /// The default options: the cyclic coordinates of the equations, no fixed components, 100 steps, a
+    /// relative residual of 10⁻¹².
     fn default() -> SteadyOptions {
         SteadyOptions { cyclic: None, fixed: Vec::new(), iterations: 100, tolerance: 1e-12 }
     }
 }
 
 impl SteadyOptions {
-    /// Names the cyclic coordinates, whose rates need not vanish. By default they are all coordinates on
+    /// Names the cyclic coordinates, whose rates need not vanish. By default, these are all coordinates on
     /// which no rates depend except those of cyclic ones.
     #[must_use]
     pub fn cyclic<S: Into<String>>(self, names: impl IntoIterator<Item = S>) -> SteadyOptions {
         SteadyOptions { cyclic: Some(names.into_iter().map(Into::into).collect()), ..self }
     }
 
-    /// Names components of the state that keep the value of the guess: they choose one of a family of steady
-    /// motions. Otherwise the one near the guess is found.
+    /// Names components of the state that keep the value they have in the guess: they select one member of a
+    /// family of steady motions. Without them, the member near the guess is found.
     #[must_use]
     pub fn fixed<S: Into<String>>(self, names: impl IntoIterator<Item = S>) -> SteadyOptions {
         SteadyOptions { fixed: names.into_iter().map(Into::into).collect(), ..self }
@@ -68,7 +69,8 @@ impl SteadyOptions {
     }
 
     /// The residual |f| that counts as zero, in units of |∂f/∂y| (1 + |y|). The iteration continues as long
-    /// as the residual falls, so that it usually ends at the level of rounding, whatever this value is.
+    /// as the residual falls, so that it usually reaches the level of rounding errors, whatever this value
+    /// is.
     #[must_use]
     pub fn tolerance(self, tolerance: f64) -> SteadyOptions {
         SteadyOptions { tolerance, ..self }
@@ -78,7 +80,7 @@ impl SteadyOptions {
 /// An equilibrium or a steady motion (Routh): f_i(t, y) = 0 for all components i but the cyclic coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SteadyMotion {
-    /// y, one number per component of the state; cyclic coordinates have the values of the guess.
+    /// y, one number for each component of the state; cyclic coordinates have the values of the guess.
     pub state: Vec<f64>,
     /// √Σ f_i² over the components that are not cyclic.
     pub residual: f64,
@@ -86,7 +88,7 @@ pub struct SteadyMotion {
     pub rates: Vec<(String, f64)>,
     /// The names of the other components, r of them, in the order of the state.
     pub components: Vec<String>,
-    /// ∂f_i/∂y_j over these, r × r: the first approximation δẏ = A δy in the reduced variables.
+    /// ∂f_i/∂y_j for these components, r × r: the first approximation δẏ = A δy in the reduced variables.
     pub first_approximation: Matrix<f64>,
     /// Its spectrum.
     pub spectrum: Spectrum,
@@ -96,9 +98,9 @@ impl SteadyMotion {
     /// The equilibrium or steady motion near `guess` at time t: f_i(t, y) = 0 for all components i but the
     /// cyclic coordinates.
     ///
-    /// Steady motions come in families, so that these equations do not determine y: the iteration goes to a
-    /// solution near the guess, and components can be [fixed](SteadyOptions::fixed). For a time-dependent
-    /// system the result is an equilibrium of the rates at that time.
+    /// Steady motions come in families, so that these equations do not determine y: the iteration converges
+    /// to a solution near the guess, and components can be [fixed](SteadyOptions::fixed). For a
+    /// time-dependent system the result is an equilibrium of the rates at that time.
     ///
     /// # Errors
     /// [`AnalysisError::NoSteadyMotion`] with the best state found; [`AnalysisError::NotSmooth`] if the
@@ -119,8 +121,8 @@ impl SteadyMotion {
     /// The steady motion among the states with g(y) = 0, for coordinates that are not independent, for
     /// example γ² = 1.
     ///
-    /// `surface` returns g(y), m numbers, and ∂g/∂y, m × n, for a state y of n components. Steady
-    /// motions remain steady only if the motion keeps the functions g.
+    /// `surface` returns g(y), m numbers, and ∂g/∂y, m × n, for a state y of n components. Steady motions
+    /// remain steady only if the functions g are constant along the motion.
     ///
     /// # Errors
     /// As [`near`](SteadyMotion::near), and the errors of `surface`.
@@ -195,9 +197,9 @@ pub fn first_approximation(motion: &mut Motion, t: f64, y: &[f64]) -> Result<Mat
     Ok(Matrix::from_fn(n, n, |i, j| entries[i + j * n]))
 }
 
-/// At the distance `BESIDE`, relative to 1 + |y|, derivatives differ by at most `AS_THERE` of their size
-/// there or at `FARTHER`, unless rates have no derivatives at the state: Newton's method may end some
-/// roundings away from a pole of the coordinates.
+/// At the distance `BESIDE`, relative to 1 + |y|, derivatives differ from those at the state by at most
+/// `AS_THERE` of their size there or at the distance `FARTHER`, unless rates have no derivatives at the
+/// state: Newton's method may end some rounding errors away from a pole of the coordinates.
 const BESIDE: f64 = 1e-7;
 const FARTHER: f64 = 1e-2;
 const AS_THERE: f64 = 1e-3;
@@ -244,7 +246,7 @@ fn components(motion: &Motion, names: &[String]) -> Result<Vec<usize>, AnalysisE
         .collect()
 }
 
-/// The cyclic coordinates: the named ones, or all.
+/// The indices of the cyclic coordinates: the named ones, or all.
 fn cyclic_among(motion: &Motion, named: Option<&[String]>) -> Result<Vec<usize>, AnalysisError> {
     let pattern =
         motion.sparsity().ok_or(MechError::Evaluation(EvaluationError::NotCompiled { what: "Jacobian" }))?;

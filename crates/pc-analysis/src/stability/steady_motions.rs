@@ -15,31 +15,33 @@ const STARTS: usize = 64;
 /// The greatest product of the number of starts and the square of the number of components.
 const MOST_WORK: usize = 20_000;
 
-/// Steps of Newton's method to the integrals of the start.
+/// The largest number of steps in which Newton's method reaches the values that the integrals have at the
+/// start.
 const MOST_STEPS: usize = 50;
 
-/// The residual at which the integrals count as attained; the search that follows is exact.
+/// The residual at which the integrals count as having these values; the search that follows is exact.
 const ON_SURFACE: f64 = 1e-6;
 
-/// The most components of a state: beyond this, each step of Newton's method takes some tenths of a second.
+/// The largest number of components of a state: beyond it, each step of Newton's method takes some tenths of
+/// a second.
 const MOST_COMPONENTS: usize = 150;
 
-/// The relative difference within which steady motions are the same.
+/// The relative difference up to which steady motions count as the same.
 pub(crate) const SAME: f64 = 1e-6;
 
-/// Singular values below this fraction of the largest are zeros.
+/// Singular values below this fraction of the largest count as zero.
 const ZERO: f64 = 1e-8;
 
 /// The equilibria and steady motions of an autonomous system that are found from many starts.
 #[derive(Clone, Debug)]
 pub struct SteadyMotions {
-    /// The motions, the nearest to the start of the model first, no two with the same state.
+    /// The motions, in order of their distance from the start of the model, no two with the same state.
     pub list: Vec<FoundSteadyMotion>,
     /// The number of starts.
     pub starts: usize,
 }
 
-/// A steady motion, and whether it belongs to a family.
+/// A steady motion, with the dimension of the family to which it belongs.
 #[derive(Clone, Debug)]
 pub struct FoundSteadyMotion {
     /// The motion.
@@ -54,11 +56,12 @@ pub struct FoundSteadyMotion {
 pub enum NoSteadyMotions {
     /// The equations depend on time.
     NotAutonomous,
-    /// Fewer functions of the coordinates are known than the frame keeps: a solution might be unreachable.
+    /// Fewer functions of the coordinates are known than are constant along motions in the frame: a solution
+    /// might be unreachable.
     SurfaceUnknown,
     /// The motion has no derivatives at its start.
     NoApproximation,
-    /// The state has so many components that the search would take long.
+    /// The state has so many components that the search would take too long.
     TooLarge {
         /// Their number.
         components: usize,
@@ -68,11 +71,11 @@ pub enum NoSteadyMotions {
 impl SteadyMotions {
     /// The steady motions found from the start (t, y), and from starts spread evenly about it: equilibria, and the
     /// steady motions that have as many integrals as possible in common with the start (Routh). Coordinates in which
-    /// rates and integrals are periodic are searched over one period, others up to some three times their value at the
-    /// start. If there are families with these integrals, one member of each dimension is kept.
+    /// rates and integrals are periodic are searched over one period, others up to about three times their value at
+    /// the start. If there are families with these integrals, one member of each dimension is kept.
     ///
     /// `motion` is compiled from the `equations`, `positions` are the relations between coordinates that constraints
-    /// imply, `integrals` the known integrals.
+    /// imply, and `integrals` are the known integrals.
     ///
     /// # Errors
     /// [`NoSteadyMotions`] with the reason.
@@ -132,7 +135,7 @@ impl SteadyMotions {
 
 /// The results so far.
 struct Found {
-    /// Each with its full state.
+    /// The motions, each with its full state.
     list: Vec<(Vec<f64>, FoundSteadyMotion)>,
     starts: usize,
     /// The period of each component that has one.
@@ -140,7 +143,7 @@ struct Found {
 }
 
 impl Found {
-    /// Searches from one guess, and adds a result that is new.
+    /// Searches from one guess, and adds the result if it is new.
     fn look<'g>(
         &mut self,
         seeker: &Seeker<'_, 'g>,
@@ -192,7 +195,7 @@ impl Found {
     }
 }
 
-/// A state near the guess with the integrals of the start.
+/// A state near the guess at which the integrals have the same values as at the start.
 fn onto(surface: &Surface<'_>, guess: &[f64]) -> Option<Vec<f64>> {
     let end = newton::solve(guess.to_vec(), MOST_STEPS, |y| Ok(surface.at(y)?)).ok()?;
     (end.iterations > 0 && end.is_solution(ON_SURFACE)).then_some(end.point)
@@ -210,7 +213,8 @@ fn family(steady: &SteadyMotion, surface: &Surface<'_>, kept: &[usize]) -> Optio
     Some(columns - values.rank(ZERO * largest))
 }
 
-/// 2π for the coordinates in which the rates have this period, at the start and near it.
+/// The periods of the components: 2π for coordinates in which the rates have this period, at the start and
+/// near it; none for others.
 pub(crate) fn periods(motion: &mut Motion, t: f64, start: &[f64]) -> Vec<Option<f64>> {
     let beside: Vec<f64> = start.iter().map(|z| z + 0.37 + 0.11 * z.abs()).collect();
     let coordinates = motion.coordinates();
@@ -234,7 +238,7 @@ pub(crate) fn periods(motion: &mut Motion, t: f64, start: &[f64]) -> Vec<Option<
     (0..start.len()).map(|i| (i < coordinates && is_periodic(i)).then_some(TAU)).collect()
 }
 
-/// The start, and others spread evenly about it, by multiples of roots of primes.
+/// The start, and other guesses spread evenly about it using multiples of roots of primes.
 fn guesses(start: &[f64], periods: &[Option<f64>]) -> Vec<Vec<f64>> {
     let size = start.len().max(1);
     let count = (MOST_WORK / (size * size)).clamp(4, STARTS);

@@ -10,14 +10,14 @@ use crate::stability::second_variation::SecondVariation;
 use crate::stability::spectrum::{Eigenvalue, Verdict};
 use crate::stability::steady_motion::{SteadyMotion, SteadyOptions, first_approximation};
 
-/// If rates are steeper than at the start by this factor, the coordinates are singular.
+/// If the slopes of the rates exceed those at the start by this factor, the coordinates are singular.
 const MOST_STEEPER: f64 = 1e6;
 
-/// Steps of Newton's method.
+/// The largest number of steps of Newton's method.
 const MOST_STEPS: usize = 50;
 
-/// The most components of the state: each step decomposes a full matrix of that size; more take some tenths
-/// of a second.
+/// The largest number of components of the state: each step decomposes a full matrix of that size, which
+/// beyond this takes some tenths of a second.
 const MOST_COMPONENTS: usize = 200;
 
 /// An equilibrium or a steady motion of an autonomous system near its start.
@@ -31,8 +31,8 @@ pub struct NearbySteadyMotion {
     pub distance: f64,
     /// The integrals that have the same values as at the start.
     pub same: Vec<String>,
-    /// The eigenvalues of the first approximation, in the directions that relations between the coordinates
-    /// leave free.
+    /// The eigenvalues of the first approximation, in the directions left free by the relations between the
+    /// coordinates.
     pub eigenvalues: Vec<Eigenvalue>,
     /// The real part that counts as zero.
     pub tolerance: f64,
@@ -50,21 +50,21 @@ pub struct NearbySteadyMotion {
 pub struct EnergyCriterion {
     /// Stable, or undecided.
     pub verdict: Verdict,
-    /// Its variables, unless they are all that are not cyclic.
+    /// Its variables, unless they are all components that are not cyclic.
     pub variables: Option<Vec<String>>,
 }
 
-/// The stability of a steady motion, and how it is known.
+/// The stability of a steady motion, and the criterion that shows it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Stability {
     /// The first approximation decides.
     ByFirstApproximation(Verdict),
     /// It is stable by the second variation of the energy.
     BySecondVariation {
-        /// Its variables, unless they are all that are not cyclic.
+        /// Its variables, unless they are all components that are not cyclic.
         variables: Option<Vec<String>>,
     },
-    /// It is asymptotically stable except for neutral directions, by the first approximation.
+    /// By the first approximation it is asymptotically stable, except in neutral directions.
     AsymptoticBut {
         /// Their number.
         directions: usize,
@@ -81,7 +81,8 @@ pub enum Stability {
 pub enum SteadySearch {
     /// The equations depend on time.
     NotAutonomous,
-    /// Fewer functions of the coordinates are known than the frame keeps: a solution might be unreachable.
+    /// Fewer functions of the coordinates are known than are constant along motions in the frame: a solution
+    /// might be unreachable.
     SurfaceUnknown,
     /// The constraints leave no velocities that are independent of each other.
     Nonlinear,
@@ -97,9 +98,9 @@ pub enum SteadySearch {
 }
 
 impl SteadySearch {
-    /// The steady motion of `equations` near the start (t, y), among the states in which coordinates that are
-    /// not independent keep their relations; `positions` are the relations that constraints imply,
-    /// `integrals` the known integrals.
+    /// The steady motion of `equations` near the start (t, y), among the states at which the relations
+    /// between dependent coordinates hold; `positions` are the relations that constraints imply, and
+    /// `integrals` are the known integrals.
     pub fn near<'g>(
         equations: &Equations<'g>,
         motion: &mut Motion,
@@ -150,7 +151,7 @@ fn moves<'g>(system: &System<'g>, x: Expr<'g>) -> bool {
     x.depends_on(system.frame().time()) || system.signals().iter().any(|&u| x.depends_on(u))
 }
 
-/// The expressions in the rates.
+/// The expressions that occur in the rates.
 fn timed<'g>(equations: &Equations<'g>) -> impl Iterator<Item = Expr<'g>> {
     let all =
         [equations.velocities(), &equations.mass_matrix().nonzero_entries(), equations.right_hand_side()];
@@ -159,15 +160,15 @@ fn timed<'g>(equations: &Equations<'g>) -> impl Iterator<Item = Expr<'g>> {
         .chain(equations.system().states().iter().map(|&(_, rate)| rate).collect::<Vec<_>>())
 }
 
-/// The data that a search shares between its starts.
+/// The data that all starts of a search share.
 pub(crate) struct Seeker<'a, 'g> {
     equations: &'a Equations<'g>,
     bound: Equations<'g>,
     integrals: Vec<(String, Expr<'g>)>,
-    /// Functions of the coordinates that all motions keep.
+    /// The functions of the coordinates that are constant along all motions.
     relations: Vec<Expr<'g>>,
     t: f64,
-    /// Rates that are steeper indicate singular coordinates.
+    /// The largest slope of the rates: a larger one indicates singular coordinates.
     steepest: f64,
 }
 
@@ -187,7 +188,7 @@ impl<'a, 'g> Seeker<'a, 'g> {
         Some(Seeker { equations, bound, integrals, relations, t, steepest: MOST_STEEPER * largest(&slopes) })
     }
 
-    /// The functions, and those of the positions that are independent of them.
+    /// The functions `same`, and those of the positions that are independent of them.
     pub(super) fn with_positions(
         &self,
         mut same: Vec<(String, Expr<'g>)>,
@@ -219,7 +220,7 @@ impl<'a, 'g> Seeker<'a, 'g> {
         (largest(&found.first_approximation) <= self.steepest).then_some(found)
     }
 
-    /// The motion as names and numbers, with the results on its stability.
+    /// The motion as names and numbers, with the results for its stability.
     pub(crate) fn described(
         &self,
         found: &SteadyMotion,
@@ -264,7 +265,7 @@ impl<'a, 'g> Seeker<'a, 'g> {
         Ok(Reachable::of(found, &kept, &normals)?)
     }
 
-    /// The size of the start in the components that are not cyclic.
+    /// The length of the vector of those components of the start that are not cyclic.
     fn size(&self, found: &SteadyMotion, start: &[f64]) -> f64 {
         self.kept(found, start).iter().map(|(_, _, start)| start * start).sum::<f64>().sqrt()
     }
@@ -277,8 +278,8 @@ impl<'a, 'g> Seeker<'a, 'g> {
     }
 }
 
-/// The differentials of the integrals by the components that are not cyclic. An integral that contains a cyclic
-/// coordinate is not a function of these components alone.
+/// The differentials of the integrals with respect to the components that are not cyclic. An integral that
+/// contains a cyclic coordinate is left out: it is not a function of these components alone.
 fn differentials<'g>(
     system: &System<'g>,
     found: &SteadyMotion,
@@ -293,7 +294,7 @@ fn differentials<'g>(
     of_kept.map(|&(_, f)| graph.evaluate(&graph.gradient(f, &kept), &at)).collect()
 }
 
-/// The rates of the cyclic coordinates, as far as they contain no cyclic coordinate.
+/// Those rates of the cyclic coordinates that contain no cyclic coordinate.
 fn constant_rates(equations: &Equations<'_>, found: &SteadyMotion) -> Vec<(String, f64)> {
     let x = equations.system().frame().coordinates();
     let is_cyclic = |name: &str| found.rates.iter().any(|(cyclic, _)| cyclic == name);
@@ -309,12 +310,13 @@ fn constant_rates(equations: &Equations<'_>, found: &SteadyMotion) -> Vec<(Strin
     rates.cloned().collect()
 }
 
-/// The largest size of an entry.
+/// The largest absolute value of an entry.
 pub(crate) fn largest(matrix: &Matrix<f64>) -> f64 {
     matrix.entries().iter().fold(0.0, |largest, entry| entry.abs().max(largest))
 }
 
-/// The integrals without time, independent of the energy and of each other; parameters are numbers.
+/// The integrals that do not contain time and are independent of the energy and of each other; parameters are
+/// replaced by numbers.
 pub(crate) struct Known<'g> {
     integrals: Vec<(String, Expr<'g>)>,
     /// The Casimirs among them.
@@ -351,8 +353,9 @@ impl<'g> Known<'g> {
         known
     }
 
-    /// The integrals that a steady motion may share with the start, the largest set first: a motion is
-    /// compared with steady motions that have the same integrals, if there are any (E. J. Routh).
+    /// Sets of integrals whose values a steady motion may share with the start, the largest set first: a
+    /// motion is compared with steady motions that have the same values of the integrals, if there are any
+    /// (E. J. Routh).
     pub(super) fn choices(self) -> Vec<Vec<(String, Expr<'g>)>> {
         let mut choices = vec![self.integrals, self.casimirs, self.of_coordinates];
         choices.dedup_by_key(|choice| choice.len());
@@ -360,7 +363,7 @@ impl<'g> Known<'g> {
     }
 }
 
-/// The states in which given functions have the same values as at the start.
+/// The states at which given functions have the same values as at the start.
 pub(super) struct Surface<'g> {
     graph: &'g Graph,
     symbols: Vec<Expr<'g>>,
@@ -370,8 +373,8 @@ pub(super) struct Surface<'g> {
 }
 
 impl<'g> Surface<'g> {
-    /// The surface, if n − rank b of the functions, as many as the frame keeps, depend on the
-    /// coordinates alone.
+    /// The surface, if n − rank b of the functions, as many as are constant along motions in the frame,
+    /// depend on the coordinates alone.
     pub(super) fn new(
         equations: &Equations<'g>,
         same: &[(String, Expr<'g>)],
@@ -408,7 +411,7 @@ impl<'g> Surface<'g> {
 }
 
 impl NearbySteadyMotion {
-    /// The stability, and how it is known.
+    /// The stability, and the criterion that shows it.
     pub fn stability(&self) -> Stability {
         let proved = |second: &&EnergyCriterion| second.verdict == Verdict::Stable;
         match (self.first_approximation, self.second_variation.as_ref().filter(proved)) {

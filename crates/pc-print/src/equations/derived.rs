@@ -9,9 +9,9 @@ use crate::equations::form::Form;
 /// Equations of motion with their constraints and reactions.
 #[derive(Clone, Debug)]
 pub struct Derived<'g> {
-    /// M η̇ = r of the independent quasi-velocities.
+    /// The equations M η̇ = r of the independent quasi-velocities.
     pub equations: Equations<'g>,
-    /// The quasi-velocities that constraints keep at zero, over which brackets are summed too.
+    /// The quasi-velocities that constraints keep at zero; sums in the brackets extend over these too.
     pub vanishing: Vec<Expr<'g>>,
     /// The constraints with their kinds.
     pub constraints: Vec<(Constraint<'g>, ConstraintKind)>,
@@ -26,10 +26,10 @@ pub struct Derived<'g> {
 }
 
 impl<'g> Derived<'g> {
-    /// The equations in a form, with its name.
+    /// The equations in a form, with the name of the form.
     ///
     /// # Errors
-    /// [`ModelError`] if there are none.
+    /// [`ModelError`] if there are no such equations.
     pub fn new(form: Form, assembly: &Assembly<'g>) -> Result<(&'static str, Derived<'g>), ModelError> {
         match form {
             Form::Reduced | Form::LiePoisson => Derived::in_free_form(form, Variables::Reduced, assembly),
@@ -145,7 +145,7 @@ impl<'g> Derived<'g> {
 }
 
 impl<'g> Derived<'g> {
-    /// The left-hand side of a constraint, written out if it is a quasi-velocity.
+    /// The left-hand side of a constraint, with its definition written out if it is a quasi-velocity.
     pub fn vanishing(&self, constraint: &Constraint<'g>) -> Expr<'g> {
         let expression = constraint.expression();
         let known =
@@ -154,7 +154,8 @@ impl<'g> Derived<'g> {
     }
 }
 
-/// A remark on the energy of equations in independent velocities, if it differs from the `energy` of a run.
+/// A remark on the energy of equations in independent velocities, if this energy differs from the `energy` of
+/// a run.
 pub fn energy_remark(assembly: &Assembly<'_>) -> Option<&'static str> {
     let ConstraintFormulation::Multipliers(held) = assembly.constraints.formulation() else { return None };
     let mut constraints = held.multipliers.constraints().iter();

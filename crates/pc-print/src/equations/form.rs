@@ -13,9 +13,9 @@ pub enum Form {
     Lagrange,
     /// Equations for independent velocities.
     Voronets,
-    /// Equations for the quasi-velocities without coordinates that nothing depends on: Euler–Poincaré.
+    /// Equations for the quasi-velocities, omitting coordinates on which nothing depends: Euler–Poincaré.
     Reduced,
-    /// Equations for the momenta of these: Lie–Poisson.
+    /// Equations for the momenta of these quasi-velocities: Lie–Poisson.
     LiePoisson,
     /// Equations for quasi-velocities that are orthonormal in the kinetic metric.
     Orthonormal,
@@ -24,7 +24,7 @@ pub enum Form {
 }
 
 impl Form {
-    /// All of them.
+    /// All forms.
     pub const ALL: [Form; 8] = [
         Form::Poincare,
         Form::Canonical,
@@ -36,7 +36,7 @@ impl Form {
         Form::Hamel,
     ];
 
-    /// The variables of its state; none for the forms in velocities, which are only printed.
+    /// The variables of its state; none for the forms in velocities, which serve only for printing.
     pub fn variables(self) -> Option<Variables> {
         Some(match self {
             Form::Poincare => Variables::QuasiVelocities,
@@ -54,7 +54,7 @@ impl Form {
         Form::ALL.into_iter().find(|form| form.name() == name)
     }
 
-    /// Its name on command lines and in Python.
+    /// The name of the form on command lines and in Python.
     pub fn name(self) -> &'static str {
         match self {
             Form::Lagrange => "lagrange",

@@ -1,7 +1,7 @@
 //! All printed expressions of equations, in the graph of a page.
 //!
-//! A page has its own graph, in which expressions keep their form and are not merged into the form that is
-//! cheapest to compute.
+//! A page has its own graph, in which expressions keep the form in which they are written and are not
+//! rewritten into the form that is cheapest to compute.
 
 use pc_algebra::{CATALOGUE, LieAlgebra, StructureCoefficients};
 use pc_expr::{Function, Given, Graph};
@@ -11,7 +11,7 @@ use pc_nonholo::ConstraintKind;
 
 use crate::equations::derived::Derived;
 
-/// Equations of at most this many nodes are multiplied out, whatever the result.
+/// Equations with up to this many nodes are multiplied out even if they become longer.
 const SMALL: usize = 60;
 
 /// The contents of a page of equations of motion.
@@ -33,7 +33,7 @@ pub struct Sheet<'p> {
     pub rates: Vec<(Expr<'p>, Expr<'p>)>,
     /// The brackets that are not zero.
     pub brackets: Brackets<'p>,
-    /// The equations themselves.
+    /// The equations of motion.
     pub balance: Balance<'p>,
     /// Each ż_j with its expression.
     pub states: Vec<(Expr<'p>, Expr<'p>)>,
@@ -43,7 +43,7 @@ pub struct Sheet<'p> {
     pub energy_remark: Option<&'static str>,
     /// Each reaction with its expression.
     pub reactions: Vec<(Expr<'p>, Expr<'p>)>,
-    /// The definitions of the model.
+    /// The definitions that the model makes.
     pub definitions: Vec<Given<'p>>,
 }
 
@@ -56,7 +56,7 @@ pub enum Balance<'p> {
         mass: Matrix<Expr<'p>>,
         /// η̇
         accelerations: Vec<Expr<'p>>,
-        /// r in the form that is computed.
+        /// r in the form in which it is computed.
         right: Vec<Expr<'p>>,
         /// r as sums of products of quasi-velocities, if it is a polynomial.
         written: Vec<Expr<'p>>,
@@ -69,17 +69,17 @@ pub enum Balance<'p> {
         rates: Vec<Expr<'p>>,
         /// y = ∂L/∂η as functions of η.
         of_velocities: Vec<Expr<'p>>,
-        /// η as functions of y; none if the equations are not closed; η in them then stands for the
+        /// η as functions of y; none if the equations are not closed, in which case η in them denotes the
         /// solution of y = ∂L/∂η.
         velocities: Option<Vec<Expr<'p>>>,
-        /// r in the form that is computed.
+        /// r in the form in which it is computed.
         right: Vec<Expr<'p>>,
         /// r as sums of products of momenta, if it is a polynomial.
         written: Vec<Expr<'p>>,
     },
 }
 
-/// Brackets [X_r, X_s] = c_rs^m X_m of the free operators and X_0, those of time.
+/// The brackets [X_r, X_s] = c_rs^m X_m of the free operators and of X_0, the operator of time.
 #[derive(Clone, Debug)]
 pub struct Brackets<'p> {
     /// Names of X_1, …: the free quasi-velocities, then those that vanish.
@@ -88,7 +88,7 @@ pub struct Brackets<'p> {
     pub nonzero: Vec<Bracket<'p>>,
     /// Whether the free operators commute.
     pub commute: bool,
-    /// Whether components along nonholonomic constraints are missing.
+    /// Whether components along nonholonomic constraints are left out.
     pub left_out: bool,
     /// The name of their algebra, if it is a known one.
     pub algebra: Option<&'static str>,
@@ -99,7 +99,7 @@ pub struct Brackets<'p> {
 pub struct Bracket<'p> {
     /// r < s
     pub pair: [usize; 2],
-    /// The m and c_rs^m that are not zero.
+    /// The c_rs^m that are not zero, each with its m.
     pub components: Vec<(usize, Expr<'p>)>,
 }
 
@@ -160,7 +160,7 @@ impl<'p> Sheet<'p> {
     }
 }
 
-/// Parts of the equations that have different names in different forms.
+/// The parts of the equations whose names differ between forms.
 struct Parts<'a, 'g, 'p> {
     vanishing: &'a [Expr<'g>],
     velocities: &'a [Expr<'g>],
@@ -175,7 +175,8 @@ struct Writing<'a, 'g, 'p> {
 }
 
 impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
-    /// Symbols in the order of a book: parameters, coordinates, then velocities or momenta.
+    /// Creates the symbols of the page in the order that a book would use: parameters, coordinates, then
+    /// velocities or momenta.
     fn new(system: &'a System<'g>, moving: &[Expr<'g>], page: &'p Graph) -> Writing<'a, 'g, 'p> {
         let parameters = system.parameters().iter().map(|(symbol, _)| symbol);
         for symbol in parameters.chain(system.frame().coordinates()).chain(moving) {
@@ -199,7 +200,7 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
         Matrix::from_rows(matrix.columns(), (0..matrix.rows()).map(row).collect())
     }
 
-    /// Right sides as sums of products if they are polynomials, unless they become much longer.
+    /// The right-hand sides as sums of products if they are polynomials, unless this makes them much longer.
     fn multiplied_out(&self, right: &[Expr<'p>], written: Vec<Option<Expr<'p>>>) -> Vec<Expr<'p>> {
         let products: Vec<Expr<'p>> =
             written.into_iter().zip(right).map(|(written, &right)| written.unwrap_or(right)).collect();
@@ -207,7 +208,8 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
         if self.page.size(&products) > longest { right.to_vec() } else { products }
     }
 
-    /// The energy; if long, as ½ M_rs η_r η_s plus the rest, when that is shorter given the printed `mass` matrix.
+    /// The energy; if it is long, as ½ M_rs η_r η_s plus the rest, provided this is shorter in view of the printed
+    /// `mass` matrix.
     fn energy(&self, equations: &Equations<'g>, mass: &Matrix<Expr<'p>>) -> Expr<'p> {
         let (graph, eta) = (self.system.graph(), self.system.quasi_velocities());
         let energy = equations.energy();
@@ -235,8 +237,8 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
         if is_long && beside(divided) < beside(whole) { divided } else { whole }
     }
 
-    /// Each ẋ_i with its value, with sines and cosines merged if that is shorter: for links this gives the
-    /// law of sines.
+    /// Each ẋ_i with its value, with sines and cosines merged if that is shorter: for linkages the law of
+    /// sines results.
     fn rates(&self, values: &[Expr<'g>]) -> Vec<(Expr<'p>, Expr<'p>)> {
         let (graph, x) = (self.system.graph(), self.system.frame().coordinates());
         let plain = self.all(values);
@@ -251,7 +253,7 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
         self.system.frame().coordinates().iter().map(|x| self.rate(x)).zip(shorter).collect()
     }
 
-    /// The brackets, with the components along the `vanishing` quasi-velocities if the form has them.
+    /// The brackets, with their components along the `vanishing` quasi-velocities if the form includes these.
     fn brackets(&self, derived: &Derived<'g>, vanishing: &[Expr<'g>]) -> Brackets<'p> {
         let system = self.system;
         let is_within = system.structure().operators() == system.quasi_velocities().len();
@@ -316,7 +318,8 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
 }
 
 impl<'p> Brackets<'p> {
-    /// The brackets of a system, with components along vanishing quasi-velocities, in the graph of a page.
+    /// The brackets of a system, including components along vanishing quasi-velocities, in the graph of a
+    /// page.
     pub(crate) fn of<'g>(system: &System<'g>, vanishing: &[Expr<'g>], page: &'p Graph) -> Brackets<'p> {
         let (structure, free) = (system.structure(), system.quasi_velocities());
         let one = |expression: Expr<'g>| system.graph().typeset(&[expression], page)[0];
@@ -337,7 +340,7 @@ impl<'p> Brackets<'p> {
     }
 }
 
-/// The name of the algebra, if the structure coefficients are those of one in the catalogue.
+/// The name of the algebra, if the structure coefficients are those of an algebra in the catalogue.
 pub fn recognised(structure: &StructureCoefficients<'_>) -> Option<&'static str> {
     let algebra = structure.lie_algebra().filter(|_| structure.nonzero().all(|(r, ..)| r > 0))?;
     let known = CATALOGUE.iter().find(|entry| LieAlgebra::named(entry.name).as_ref() == Ok(&algebra));

@@ -1,7 +1,7 @@
-//! The equations of large trees of bodies, from body to body.
+//! The equations of large trees of bodies, written body by body.
 //!
-//! Written out in full, they are longer than a page and grow with the number of bodies; from body to body
-//! each has the same few equations, with its own rotation, place and mass.
+//! Written out in full, they are longer than a page and grow with the number of bodies; written body by body,
+//! they are the same few equations for each, with its own rotation, position and mass.
 
 use std::fmt::Write as _;
 
@@ -52,20 +52,20 @@ pub(crate) struct TreeOnPage<'p> {
     gravity: [Expr<'p>; 3],
 }
 
-/// A body with its own data.
+/// A body with the data that enter its equations.
 struct BodyOnPage<'p> {
     name: String,
     parent: String,
-    /// Letters as in a book, identifiers for programs, and the vectors they denote.
+    /// The letters used in print, the identifiers used by programs, and the vectors they denote.
     vectors: Vec<(&'static str, &'static str, [Expr<'p>; 3])>,
     matrices: Vec<(&'static str, &'static str, Matrix<Expr<'p>>)>,
     mass: Expr<'p>,
-    /// η with Q_η, without loads on bodies.
+    /// Each η with its Q_η, which does not include loads on bodies.
     forces: Vec<(Expr<'p>, Expr<'p>)>,
     kinematics: Vec<(Expr<'p>, Expr<'p>)>,
 }
 
-/// A tree, in the graph of a page.
+/// The tree, rebuilt in the graph of a page.
 pub(crate) fn tree_on_page<'p>(system: &System<'_>, tree: &Tree<'_>, paper: &'p Graph) -> TreeOnPage<'p> {
     let graph = system.graph();
     let one = |expression: Expr<'_>| graph.typeset(&[expression], paper)[0];
@@ -110,7 +110,7 @@ fn vanishes(vector: &[Expr<'_>; 3]) -> bool {
     vector.iter().all(|component| component.is_zero())
 }
 
-/// As text; `heading` is the title with the name of the form.
+/// The equations as text; `heading` is the title with the name of the form.
 pub(crate) fn text(heading: &str, tree: &TreeOnPage<'_>, operations: &Operations, layout: &Layout) -> String {
     let mut page = crate::language::text::underlined(heading);
     page +=

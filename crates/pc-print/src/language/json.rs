@@ -10,7 +10,7 @@ use crate::equations::sheet::{Balance, Bracket, Sheet};
 use crate::layout::layout::Layout;
 
 /// The equations for programs. If canonical equations are not closed, there are no
-/// `quasi_velocities_of_momenta`, and the quasi-velocities stand for the solution of `momenta` =
+/// `quasi_velocities_of_momenta`, and the quasi-velocities denote the solution of `momenta` =
 /// `momenta_of_velocities`.
 pub(crate) fn page(
     title: &str,
@@ -81,7 +81,7 @@ pub(crate) fn page(
     Value::Object(object)
 }
 
-/// Text in the expression language, in which x'' is d(x').
+/// The text in the expression language, in which x'' is written d(x').
 fn in_language(text: &str) -> String {
     let mut pieces = text.split("''");
     let mut written = pieces.next().unwrap_or_default().to_owned();
@@ -116,7 +116,8 @@ impl Text {
         rows.iter().map(|row| self.list(row)).collect()
     }
 
-    /// The coefficients c_rs^m that are not zero, by the names of the quasi-velocities, 0 for time.
+    /// The coefficients c_rs^m that are not zero; r, s and m are given as names of quasi-velocities, with 0
+    /// for time.
     fn structure(&self, sheet: &Sheet<'_>) -> Value {
         let name = |s: &usize| s.checked_sub(1).map_or("0", |s| sheet.brackets.operators[s].as_str());
         let coefficients = sheet.brackets.nonzero.iter().flat_map(|Bracket { pair: [r, s], components }| {

@@ -55,7 +55,7 @@ pub(crate) fn displays<'a, 'p>(
     parts.with_names().map(display).collect()
 }
 
-/// The environment around some lines.
+/// Puts some lines into an environment that aligns them.
 pub(crate) fn aligned(lines: &[String]) -> String {
     format!("\\begin{{align*}}\n{}\n\\end{{align*}}", lines.join(" \\\\\n"))
 }
@@ -67,17 +67,17 @@ struct Latex<'a, 'p> {
     layout: &'a Layout,
     names: &'a Names<'p>,
     set: Written,
-    /// The same in plain characters, whose widths decide where lines are broken.
+    /// The same expressions in plain characters, whose widths decide where lines are broken.
     plain: Written,
 }
 
-/// Left sides with more columns have separate lines: all right sides of a display begin behind the longest
-/// of the others.
+/// Left-hand sides wider than this are put on a line of their own: all right-hand sides of a display begin
+/// after the longest of the others.
 const LONG_LEFT: usize = 24;
-/// Columns before the continuation of a line.
+/// The number of columns by which the continuation of a line is indented.
 const HANGING: usize = 6;
 
-/// A line in which all brackets open and close, so that they may grow with their contents.
+/// The line, with large brackets that grow with their contents if they open and close within it.
 pub(crate) fn whole(line: String) -> String {
     match (line.matches("\\Bigl(").count(), line.matches("\\Bigr)").count()) {
         (1, 1) => line.replace("\\Bigl(", "\\left(").replace("\\Bigr)", "\\right)"),
@@ -90,7 +90,7 @@ fn operator_of(quasi_velocity: Option<&str>) -> String {
     format!("X_{{{}}}", quasi_velocity.unwrap_or("0"))
 }
 
-/// Terms as typeset, each with its columns in plain characters.
+/// Terms as typeset, each with its width in columns when written in plain characters.
 type Terms = Vec<(String, usize)>;
 
 impl<'p> Latex<'_, 'p> {
@@ -181,8 +181,8 @@ impl<'p> Latex<'_, 'p> {
         }
     }
 
-    /// The two sides on as many lines as needed: the right side begins after a short left side, or on a
-    /// separate line.
+    /// The two sides on as many lines as needed: the right-hand side begins after a short left-hand side, or
+    /// otherwise on a separate line.
     fn equation(&self, left: Terms, right: Terms) -> String {
         let width: usize = left.iter().map(|(_, width)| width + 1).sum();
         let joined = |lines: Terms, before: &str| {
@@ -204,7 +204,7 @@ impl<'p> Latex<'_, 'p> {
         format!("  & {left} \\\\\n    &\\quad = {right}")
     }
 
-    /// Terms on lines, each with its columns.
+    /// The terms arranged in lines, each line with its width in columns.
     fn flowed(&self, terms: Terms, begin: usize) -> Terms {
         let mut lines = Terms::new();
         for (term, width) in terms {
@@ -221,7 +221,7 @@ impl<'p> Latex<'_, 'p> {
     }
 }
 
-/// Words within a formula of LaTeX.
+/// Words escaped for use within a formula of LaTeX.
 pub(crate) fn in_text(words: &str) -> String {
     let mut text = String::with_capacity(words.len());
     for c in words.chars() {

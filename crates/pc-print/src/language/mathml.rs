@@ -1,4 +1,4 @@
-//! The equations for a browser: tables of MathML, lines broken as in LaTeX.
+//! The equations for a browser: tables of MathML, with lines broken as in LaTeX.
 
 use pc_expr::{Names, Style, Written};
 use pc_mech::Expr;
@@ -15,15 +15,15 @@ const MINUS: &str = "<mo>−</mo>";
 const EQUALS: &str = "<mo>=</mo>";
 const THIN: &str = "<mspace width=\"0.17em\"/>";
 
-/// Left sides with more columns have separate lines.
+/// Left-hand sides wider than this are put on a line of their own.
 const LONG_LEFT: usize = 24;
-/// Columns before the continuation of a line.
+/// The number of columns by which the continuation of a line is indented.
 const HANGING: usize = 6;
 
-/// Terms as typeset, each with its columns in plain characters.
+/// Terms as typeset, each with its width in columns when written in plain characters.
 pub(crate) type Terms = Vec<(String, usize)>;
 
-/// Text between elements, with markup escaped.
+/// Text for use between elements, with its markup characters escaped.
 pub(crate) fn escaped(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for c in text.chars() {
@@ -41,7 +41,7 @@ pub(crate) fn escaped(text: &str) -> String {
     safe
 }
 
-/// A row in brackets.
+/// A row enclosed in brackets.
 pub(crate) fn bracketed(row: &str) -> String {
     format!("<mrow><mo>(</mo>{row}<mo>)</mo></mrow>")
 }
@@ -51,13 +51,13 @@ pub(crate) fn partial(x: &str) -> String {
     format!("<mfrac><mi>∂</mi><mrow><mi>∂</mi>{x}</mrow></mfrac>")
 }
 
-/// X_s by the name of η_s.
+/// X_s, with the name of η_s as its index.
 pub(crate) fn operator(eta: &str) -> String {
     format!("<msub><mi>X</mi>{eta}</msub>")
 }
 
-/// The terms of a linear combination, from each coefficient in plain characters and as typeset, and its
-/// element.
+/// The terms of a linear combination; each is given by its coefficient in plain characters, its coefficient
+/// as typeset, and its element.
 pub(crate) fn combination(terms: impl Iterator<Item = (String, String, String)>) -> Terms {
     let mut sum = Terms::new();
     for (plain, set, element) in terms {
@@ -81,18 +81,18 @@ pub(crate) fn combination(terms: impl Iterator<Item = (String, String, String)>)
     if sum.is_empty() { vec![("<mn>0</mn>".to_owned(), 1)] } else { sum }
 }
 
-/// Rows of a table under each other as one formula.
+/// The rows of a table, one below the other, as one formula.
 pub(crate) fn table(rows: &[String]) -> String {
     format!("<math display=\"block\"><mtable displaystyle=\"true\">{}</mtable></math>", rows.concat())
 }
 
-/// The two sides in one row, of any lengths.
+/// The two sides in one row, however long they are.
 pub(crate) fn row(left: &str, right: &str) -> String {
     format!("<mtr><mtd>{left}</mtd><mtd>{EQUALS}</mtd><mtd>{right}</mtd></mtr>")
 }
 
-/// The two sides in as many rows as needed: the right side begins after a short left side, or in a
-/// separate row.
+/// The two sides in as many rows as needed: the right-hand side begins after a short left-hand side, or
+/// otherwise in a separate row.
 pub(crate) fn equation(left: Terms, right: Terms, width: usize) -> Vec<String> {
     let columns: usize = left.iter().map(|(_, width)| width + 1).sum();
     if columns <= LONG_LEFT {
@@ -112,7 +112,7 @@ pub(crate) fn equation(left: Terms, right: Terms, width: usize) -> Vec<String> {
     rows
 }
 
-/// Terms in lines.
+/// The terms arranged in lines.
 fn flowed(terms: Terms, begin: usize, width: usize) -> Vec<String> {
     let mut lines = Terms::new();
     for (term, columns) in terms {
@@ -155,7 +155,7 @@ struct Set<'a, 'p> {
     layout: &'a Layout,
     names: &'a Names<'p>,
     set: Written,
-    /// The same in plain characters, whose widths decide where lines are broken.
+    /// The same expressions in plain characters, whose widths decide where lines are broken.
     plain: Written,
 }
 

@@ -10,7 +10,7 @@ use crate::layout::layout::Layout;
 use crate::layout::part::{Heading, Part, Parts, Row, entry_name};
 use crate::words::lines::{columns, combined};
 
-/// Matrices of more columns are written entry by entry.
+/// Matrices wider than this, in columns, are written entry by entry.
 const WIDEST_MATRIX: usize = 96;
 /// The indentation under a heading.
 const INDENT: usize = 2;
@@ -43,12 +43,12 @@ pub(crate) fn page(sheet: &Sheet<'_>, operations: &Operations, layout: &Layout, 
     self::sections(&sections)
 }
 
-/// A heading with a line under it.
+/// A heading, underlined.
 pub(crate) fn underlined(heading: &str) -> String {
     format!("{heading}\n{}\n\n", "=".repeat(columns(heading)))
 }
 
-/// Titles with the lines under them; those without lines are left out.
+/// Titles, each with its lines below; titles without lines are left out.
 fn sections(parts: &[(&str, Vec<String>)]) -> String {
     let section = |(title, lines): &(&str, Vec<String>)| {
         let lines: String = lines.iter().map(|line| format!("{:INDENT$}{line}\n", "")).collect();
@@ -67,7 +67,7 @@ struct Text<'a, 'p> {
 }
 
 impl<'p> Text<'_, 'p> {
-    /// The meanings of names.
+    /// The lines that define names.
     fn meanings(&self, numbers: &[usize]) -> Vec<String> {
         if self.layout.brief {
             return Vec::new();
@@ -116,8 +116,8 @@ impl<'p> Text<'_, 'p> {
         }
     }
 
-    /// The brackets by the names of the quasi-velocities, `t` for time; they may have components along
-    /// vanishing ones.
+    /// The brackets, in terms of the names of the quasi-velocities, with `t` for time; they may have
+    /// components along vanishing quasi-velocities.
     fn brackets(&self, part: &Part<'p>) -> Vec<String> {
         let operators = &self.sheet.brackets.operators;
         let name = |s: usize| s.checked_sub(1).map_or("t", |s| operators[s].as_str());
@@ -197,7 +197,7 @@ pub(crate) fn no_brackets(brackets: &Brackets<'_>) -> &'static str {
 /// The remark on brackets of which only the components within the frame are printed.
 pub(crate) const LEFT_OUT: &str = "components along the constraints are left out";
 
-/// A matrix by rows, the columns under each other, if it is not too wide.
+/// A matrix row by row, with aligned columns, if it is not too wide.
 fn matrix(cells: &[Vec<String>]) -> Option<Vec<String>> {
     let k = cells.len();
     let widths: Vec<usize> =

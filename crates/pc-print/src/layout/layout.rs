@@ -7,7 +7,7 @@ use crate::words::lines::columns;
 pub struct Layout {
     /// The width of a line, in columns.
     pub width: usize,
-    /// Whether equations in text end after their first line.
+    /// Whether equations in text are cut off after their first line.
     pub brief: bool,
     /// Whether definitions of the model are written out.
     pub inline: bool,
@@ -19,22 +19,23 @@ impl Default for Layout {
     }
 }
 
-/// Left sides of more columns are not padded.
+/// Left-hand sides wider than this are not padded.
 const WIDEST_PADDED: usize = 24;
 /// The greatest indentation of a continuation line.
 const DEEPEST: usize = 32;
-/// The indentation of a continuation line without room under its equals sign.
+/// The indentation of a continuation line for which there is no room to the right of the equals sign.
 const HANGING: usize = 4;
-/// Left sides with more columns have separate lines.
+/// Left-hand sides wider than this are put on a line of their own.
 const LONG_LEFT: usize = 60;
 
 impl Layout {
-    /// Columns between two signs.
+    /// The number of columns available between two signs.
     pub(crate) fn room(&self) -> usize {
         self.width.saturating_sub(24).max(24)
     }
 
-    /// Left = right, each in terms, with aligned equals signs unless a left side is long.
+    /// The equations `left = right`, each side a list of terms, with aligned equals signs except after long
+    /// left-hand sides.
     pub(crate) fn aligned(&self, equations: &[(Vec<String>, Vec<String>)]) -> Vec<String> {
         let wide = |(left, _): &(Vec<String>, Vec<String>)| columns(&left.join(" "));
         let width = equations.iter().map(wide).filter(|&width| width <= WIDEST_PADDED).max().unwrap_or(0);
@@ -58,7 +59,7 @@ impl Layout {
         }
     }
 
-    /// Terms one after the other, in as many lines as needed, the first of which begins with `head`.
+    /// The terms one after the other, on as many lines as needed, the first of which begins with `head`.
     pub(crate) fn flowed(&self, head: &str, terms: &[String]) -> Vec<String> {
         let indent = if columns(head) <= DEEPEST && !head.is_empty() { columns(head) } else { HANGING };
         let mut lines = vec![head.to_owned()];

@@ -1,4 +1,4 @@
-//! A page in parts with headings, the same in text and in LaTeX.
+//! A page divided into parts with headings, which are the same in text and in LaTeX.
 
 use pc_expr::{Given, Names, Side};
 use pc_mech::{Expr, Graph, Matrix};
@@ -54,22 +54,22 @@ impl Heading {
     }
 }
 
-/// A line of a part.
+/// A row of a part.
 #[derive(Clone, Debug)]
 pub(crate) enum Row<'p> {
-    /// `name: left = 0 (kind)`
+    /// A constraint: `name: left = 0 (kind)`.
     Constraint { name: String, left: Expr<'p>, kind: ConstraintKind },
     /// left = right
     Equation { left: Expr<'p>, right: Expr<'p> },
     /// [X_r, X_s] = Σ c X_m
     Bracket(Bracket<'p>),
-    /// X_s = Σ b_is ∂/∂x_i, with the name of η_s; X_0 without a name.
+    /// X_s = Σ b_is ∂/∂x_i, with the name of η_s; X_0 has none.
     Operator { quasi_velocity: Option<String>, components: Vec<(Expr<'p>, Expr<'p>)> },
-    /// Q_s = value, by the name of η_s.
+    /// Q_s = value, identified by the name of η_s.
     Force { quasi_velocity: String, value: Expr<'p> },
     /// An entry M_rs.
     Entry { place: [usize; 2], value: Expr<'p> },
-    /// A function with its letter.
+    /// A function with the letter that denotes it.
     Function { letter: &'static str, value: Expr<'p> },
 }
 
@@ -92,13 +92,13 @@ impl<'p> Row<'p> {
 pub(crate) struct Parts<'p> {
     pub(crate) parts: Vec<Part<'p>>,
     pub(crate) names: Names<'p>,
-    /// The number of the first line of each part.
+    /// The index of the first line of each part.
     starts: Vec<usize>,
 }
 
 impl<'p> Parts<'p> {
     /// The parts of a sheet, with names for long expressions; with `entries` the mass matrix is a part of its
-    /// own, which shortens left sides.
+    /// own, which shortens left-hand sides.
     pub(crate) fn new(sheet: &Sheet<'p>, layout: &Layout, page: &'p Graph, entries: bool) -> Parts<'p> {
         let mut given: Vec<Given<'p>> = if layout.inline { Vec::new() } else { sheet.definitions.clone() };
         let mut parts = sheet.parts(page, entries);
@@ -129,7 +129,7 @@ impl<'p> Parts<'p> {
         Parts::of(parts, named)
     }
 
-    /// Parts whose names are given.
+    /// The parts, with given names for their expressions.
     fn of(parts: Vec<Part<'p>>, names: Names<'p>) -> Parts<'p> {
         let starts = parts.iter().scan(0, |next, part| {
             let start = *next;
@@ -140,7 +140,7 @@ impl<'p> Parts<'p> {
         Parts { parts, names, starts }
     }
 
-    /// Parts with names for long expressions, among them those `given`.
+    /// Parts with names for long expressions, including the names that are `given`.
     pub(crate) fn named(
         mut parts: Vec<Part<'p>>,
         given: &[Given<'p>],
@@ -152,7 +152,7 @@ impl<'p> Parts<'p> {
         Parts::of(parts, named)
     }
 
-    /// The parts, each with the numbers of the names first used there.
+    /// The parts, each with the indices of the names first used in it.
     pub(crate) fn with_names(&self) -> impl Iterator<Item = (&Part<'p>, Vec<usize>)> {
         self.parts.iter().enumerate().map(|(i, part)| {
             let end = self.starts.get(i + 1).copied().unwrap_or(usize::MAX);
@@ -164,7 +164,7 @@ impl<'p> Parts<'p> {
     }
 }
 
-/// Names of entries of the mass matrix that are used before it is printed.
+/// The names of entries of the mass matrix that are used before the matrix is printed.
 fn used_before_matrix(parts: &[Part<'_>], named: &Names<'_>) -> Vec<String> {
     let before = parts.iter().take_while(|part| part.heading != Heading::MassMatrix);
     let lines: usize = before.flat_map(|part| &part.rows).map(|row| row.sides().len()).sum();
@@ -230,7 +230,7 @@ impl<'p> Sheet<'p> {
         parts
     }
 
-    /// Names for the entries of the mass matrix, which are printed.
+    /// Names for the entries of the mass matrix, which is printed.
     fn entry_names(&self) -> Vec<Given<'p>> {
         let Balance::Velocities { mass, .. } = &self.balance else { return Vec::new() };
         let entries = entry_rows(mass).into_iter().filter_map(|row| match row {

@@ -20,12 +20,12 @@ use crate::theory::description::{Section, Side, Theory};
 use crate::theory::options::TheoryOptions;
 use crate::words::words::short;
 
-/// Formulas under each other.
+/// Formulas, one below the other.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Display {
     /// A `math` element.
     pub mathml: String,
-    /// The same as LaTeX, with amsmath.
+    /// The same formulas in LaTeX, for use with amsmath.
     pub latex: String,
 }
 
@@ -36,7 +36,7 @@ pub struct DisplayedPart {
     pub title: &'static str,
     /// The formulas, if there are any.
     pub display: Option<Display>,
-    /// Notes on them.
+    /// Notes on the formulas.
     pub notes: Vec<String>,
 }
 
@@ -47,7 +47,7 @@ pub struct DisplayedEquations {
     pub name: String,
     /// Its parts.
     pub parts: Vec<DisplayedPart>,
-    /// The whole in plain text instead, if it is written from body to body.
+    /// All equations in plain text and LaTeX instead of parts, if they are written body by body.
     pub plain: Option<Display>,
     /// The cost of a right-hand side, line by line.
     pub operations: Vec<String>,
@@ -64,7 +64,7 @@ pub struct DisplayedTheory {
     pub names: Option<String>,
     /// Its contents.
     pub entries: Vec<DisplayedEntry>,
-    /// All its formulas for a paper.
+    /// All its formulas in LaTeX.
     pub latex: Option<String>,
 }
 
@@ -77,7 +77,7 @@ pub struct DisplayedEntry {
     pub mathml: Option<String>,
     /// The verdict on them, in words: proved, disproved, open.
     pub verdict: Option<String>,
-    /// Names with numbers.
+    /// Names with their numerical values.
     pub values: Vec<String>,
     /// Further sentences.
     pub words: Vec<String>,
@@ -86,10 +86,11 @@ pub struct DisplayedEntry {
 }
 
 /// The data of the derivation: the operators X_s = b_is ∂/∂x_i of the frame and their brackets (5), T, U and
-/// L, forces.
+/// L, and the forces.
 ///
-/// U = L where all quasi-velocities vanish, T = L − U; if the frame itself moves, L − U is more than the
-/// kinetic energy, and only L is shown. For a large tree of bodies L is longer than a page and is left out.
+/// U is the value of L where all quasi-velocities vanish, and T = L − U; if the frame itself moves, L − U is
+/// not just the kinetic energy, and only L is shown. For a large tree of bodies L is longer than a page and
+/// is left out.
 ///
 /// # Errors
 /// [`ModelError`] if a limit is reached.
@@ -153,7 +154,7 @@ fn algebra(brackets: &Brackets<'_>) -> Vec<String> {
     brackets.algebra.map(|name| format!("the algebra {name}")).into_iter().collect()
 }
 
-/// Symbols in the order of a book.
+/// Creates the symbols of the page in the order that a book would use.
 fn in_order(system: &System<'_>, paper: &Graph) {
     let parameters = system.parameters().iter().map(|(symbol, _)| symbol);
     for symbol in parameters.chain(system.frame().coordinates()).chain(system.quasi_velocities()) {

@@ -75,7 +75,7 @@ pub(crate) fn sheet_of<'g, 'p>(
     Ok((name, sheet, operations))
 }
 
-/// A program may have given constraints arbitrary names.
+/// The text made safe for a terminal: a program may have given constraints arbitrary names.
 fn on_terminal(text: String) -> String {
     match visible(&text) {
         std::borrow::Cow::Borrowed(_) => text,

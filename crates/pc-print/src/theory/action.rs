@@ -7,7 +7,7 @@ use crate::theory::basis::Basis;
 use crate::theory::description::{Entry, Section, Side, Verdict};
 use crate::words::words::{short, small};
 
-/// X_0 S + H(t, x, X_s S) = 0, and the action of the model.
+/// The section on X_0 S + H(t, x, X_s S) = 0 and the action of the model.
 pub(crate) fn section<'g>(ground: &Basis<'_, 'g>) -> Section<'g> {
     let section =
         |entries| Section { key: "hamilton_jacobi", title: "Hamilton–Jacobi", names: Vec::new(), entries };
@@ -77,7 +77,8 @@ fn residual(checked: &ProposedAction<'_>) -> Vec<String> {
     }
 }
 
-/// The equation, with X_s S as a symbol `S_` and the name of the coordinate or quasi-velocity.
+/// The equation, in which X_s S is written as a symbol: `S_` followed by the name of the coordinate or
+/// quasi-velocity.
 fn equation<'g>(ground: &Basis<'_, 'g>) -> Vec<Entry<'g>> {
     let (Ok(canonical), system) = (&ground.canonical, &ground.free) else { return Vec::new() };
     if system.forces().iter().any(|q| !q.is_zero()) {

@@ -15,7 +15,7 @@ pub(crate) struct Basis<'a, 'g> {
     pub(crate) constrained: Option<Constrained<'g>>,
     /// The canonical equations of the independent momenta, or the reason why there are none.
     pub(crate) canonical: Result<Canonical<'g>, String>,
-    /// Values at the start.
+    /// The values of time, state and parameters at the start.
     pub(crate) near: Neighbourhood<'g>,
 }
 
@@ -52,7 +52,7 @@ impl<'a, 'g> Basis<'a, 'g> {
         matches!(self.assembly.constraints.formulation(), ConstraintFormulation::Free)
     }
 
-    /// Whether forces are computed outside.
+    /// Whether forces are computed outside the model.
     pub(crate) fn has_external_forces(&self) -> bool {
         !self.assembly.system.external_forces().is_empty()
     }
@@ -63,7 +63,7 @@ impl<'a, 'g> Basis<'a, 'g> {
     }
 }
 
-/// The same for a model without its equations.
+/// The same for a model whose equations are not at hand.
 pub(crate) fn placed<T>(assembly: &Assembly<'_>, found: Result<T, AnalysisError>) -> Result<T, ModelError> {
     found.or_else(|error| match error {
         AnalysisError::Nonholo(error) => assembly.placed(Err(error)),

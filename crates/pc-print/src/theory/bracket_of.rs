@@ -6,16 +6,16 @@ use pc_model::{Assembly, Model, ModelError, Variables};
 
 use crate::theory::basis::{NONLINEAR, placed};
 
-/// The Poisson bracket (12) of two expressions of a model, coordinates and velocities in them,
+/// The Poisson bracket (12) of two expressions in the coordinates and velocities of a model,
 ///
 ///   (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m,
 ///
-/// with the momenta y_s = ∂L/∂η_s, as a function of time, coordinates and the independent quasi-velocities. Under nonholonomic
-/// constraints it is the almost-Poisson bracket of the independent momenta.
+/// where y_s = ∂L/∂η_s are the momenta. It is returned as a function of time, coordinates and the independent
+/// quasi-velocities. Under nonholonomic constraints it is the almost-Poisson bracket of the independent momenta.
 ///
 /// # Errors
-/// [`ModelError`] at the place in `f`, `g` or the model that rules out a bracket: the velocities have to be functions of
-/// the momenta in closed form, and the constraints affine in the velocities.
+/// [`ModelError`], located at the position in `f`, `g` or the model that rules out a bracket: the velocities have to be
+/// functions of the momenta in closed form, and the constraints affine in the velocities.
 pub fn bracket_of<'g>(
     model: &Model,
     assembly: &Assembly<'g>,

@@ -21,7 +21,7 @@ pub(crate) struct Section<'g> {
     pub(crate) key: &'static str,
     /// Its title in print.
     pub(crate) title: &'static str,
-    /// Names first used here, each with its meaning.
+    /// The names first used here, each with its meaning.
     pub(crate) names: Vec<(Side<'g>, Side<'g>)>,
     pub(crate) entries: Vec<Entry<'g>>,
 }
@@ -31,11 +31,11 @@ pub(crate) struct Section<'g> {
 pub(crate) struct Entry<'g> {
     pub(crate) name: Option<String>,
     pub(crate) formulas: Vec<(Side<'g>, Side<'g>)>,
-    /// Names with numbers.
+    /// Names with their numerical values.
     pub(crate) values: Vec<(String, f64)>,
     /// The verdict, with its subject if that is not the formulas.
     pub(crate) verdict: Option<(Option<&'static str>, Verdict)>,
-    /// Sentences without formulas.
+    /// Sentences that contain no formulas.
     pub(crate) words: Vec<String>,
     /// Real and imaginary parts of the eigenvalues that belong to it.
     pub(crate) spectrum: Vec<(f64, f64)>,
@@ -44,16 +44,16 @@ pub(crate) struct Entry<'g> {
 /// Whether a claim holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Verdict {
-    /// For all values of the parameters.
+    /// It holds for all values of the parameters.
     Proved,
-    /// For the present values of the parameters.
+    /// It holds for the present values of the parameters.
     ProvedHere,
-    /// In numbers this fraction of the terms of an identity is left.
+    /// It does not hold: numerically, the terms of an identity leave this fraction of their size.
     Disproved {
         /// The fraction, from 0 to 1.
         margin: f64,
     },
-    /// For the stability of a motion from which others depart.
+    /// A motion is not stable: others depart from it.
     Unstable {
         /// The largest real part of an eigenvalue.
         growth: f64,
@@ -62,15 +62,15 @@ pub(crate) enum Verdict {
     Open,
 }
 
-/// A side of a formula, in each style; expressions are written as soon as all expressions of the page are
+/// A side of a formula, in each style; an expression is written out once all expressions of the page are
 /// known.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Side<'g> {
     pub(crate) expression: Option<Expr<'g>>,
-    /// Text as in a book.
+    /// Text as a book prints it.
     pub(crate) book: String,
     pub(crate) latex: String,
-    /// In the expression language, if possible.
+    /// Text in the expression language, if possible.
     pub(crate) text: String,
     /// A row of MathML.
     pub(crate) mathml: String,
@@ -110,7 +110,7 @@ impl<'g> Side<'g> {
         Side { expression: Some(e), ..Side::default() }
     }
 
-    /// The text in each style.
+    /// A text, as `write` gives it in each style.
     pub(crate) fn written(write: impl Fn(Style) -> String) -> Side<'g> {
         Side {
             expression: None,
@@ -121,7 +121,7 @@ impl<'g> Side<'g> {
         }
     }
 
-    /// A mathematical symbol with one form in all plain text.
+    /// A mathematical symbol that has the same form in all plain text.
     pub(crate) fn symbol(plain: &str, latex: &str, mathml: &str) -> Side<'g> {
         let (book, latex, text) = (plain.to_owned(), latex.to_owned(), plain.to_owned());
         Side { expression: None, book, latex, text, mathml: mathml.to_owned() }
@@ -163,7 +163,7 @@ impl<'g> Entry<'g> {
         Entry { formulas: vec![(left, right)], ..Entry::default() }
     }
 
-    /// Words without formulas.
+    /// An entry of words without formulas.
     pub(crate) fn words(words: impl Into<String>) -> Entry<'g> {
         Entry { words: vec![words.into()], ..Entry::default() }
     }
@@ -176,7 +176,7 @@ impl<'g> Entry<'g> {
         Entry { verdict: Some((None, verdict)), ..self }
     }
 
-    /// With a verdict on something other than its formulas.
+    /// The entry with a verdict on something other than its formulas.
     pub(crate) fn with_on(self, subject: &'static str, verdict: Verdict) -> Entry<'g> {
         Entry { verdict: Some((Some(subject), verdict)), ..self }
     }

@@ -1,12 +1,12 @@
-//! Long formulas on several lines.
+//! Long formulas broken into several lines.
 
-/// The formula in lines of at most `width` characters, as far as it can be broken before a sign of a sum,
-/// inside as few brackets as possible. The formula stays complete.
+/// The formula on lines of at most `width` characters, as far as possible; it is broken before a sign of a
+/// sum, inside as few brackets as possible. No part of the formula is left out.
 pub(crate) fn folded(formula: &str, width: usize) -> Vec<String> {
     broken(formula, width, usize::MAX)
 }
 
-/// The formula broken outside of all brackets only.
+/// The formula broken only outside all brackets.
 pub(crate) fn folded_outside(formula: &str, width: usize) -> Vec<String> {
     broken(formula, width, 0)
 }

@@ -14,7 +14,7 @@ use crate::theory::options::TheoryOptions;
 use crate::words::lines::combination;
 use crate::words::words::short;
 
-/// The integrals of a model's motion, known or found by an ansatz, with names for readers.
+/// The integrals of a model's motion, known or found by an ansatz, with names meant for readers.
 pub fn integrals_of<'g>(
     assembly: &Assembly<'g>,
     equations: &Equations<'g>,
@@ -49,7 +49,7 @@ fn drop_constraints<'g>(integrals: &mut Integrals<'g>, assembly: &Assembly<'g>, 
     }
 }
 
-/// Names momenta by their displacements.
+/// Names momenta after their displacements.
 fn name_momenta(integrals: &mut Integrals<'_>, system: &System<'_>) {
     let name = |coefficients: &[Number]| {
         let names = system.quasi_velocities().iter().map(ToString::to_string);
@@ -61,13 +61,14 @@ fn name_momenta(integrals: &mut Integrals<'_>, system: &System<'_>) {
     });
 }
 
-/// Marks conserved functions that resets may change between events.
+/// Marks functions that are conserved between events, but may be changed by resets.
 fn say_what_jumps<'g>(integrals: &mut Integrals<'g>, assembly: &Assembly<'g>) {
     let projected = matches!(assembly.constraints.formulation(), ConstraintFormulation::Multipliers(_));
     integrals.jump(&assembly.system, assembly.events.iter().map(|event| event.resets.as_slice()), projected);
 }
 
-/// The energy of all velocities, which a run observes, in terms of the independent ones of the equations.
+/// The energy formed with all velocities, which a run observes, in terms of the independent velocities of the
+/// equations.
 fn energy_of_all<'g>(assembly: &Assembly<'g>, equations: &Equations<'g>) -> Option<Expr<'g>> {
     let (all, free) = (assembly.system.quasi_velocities(), equations.system().quasi_velocities());
     let values = assembly.quasi_velocities_of(free).ok()?;
@@ -76,7 +77,7 @@ fn energy_of_all<'g>(assembly: &Assembly<'g>, equations: &Equations<'g>) -> Opti
     Some(graph.substitute(&[assembly.system.energy()], &known)[0])
 }
 
-/// The integrals of the theory, those of the ansatz at the end, with the extent of its search.
+/// The integrals that the theory lists, those found by the ansatz at the end, and the extent of the search.
 pub(crate) fn found<'g>(
     ground: &Basis<'_, 'g>,
     model: &Model,
@@ -94,7 +95,7 @@ pub(crate) fn found<'g>(
     Ok((integrals, made))
 }
 
-/// Each with its verdict.
+/// The section on the integrals, each with its verdict.
 pub(crate) fn section<'g>(
     ground: &Basis<'_, 'g>,
     (integrals, made): &(Integrals<'g>, AnsatzSearch),
@@ -120,7 +121,8 @@ pub(crate) fn section<'g>(
     Section { key: "integrals", title: "Integrals", names: Vec::new(), entries }
 }
 
-/// The verdict on an integral: if its rate is not proved to vanish, numbers at the start may refute it.
+/// The verdict on an integral: if its rate is not proved to vanish, numerical values at the start may refute
+/// it.
 fn verdict(integral: &Integral<'_>) -> (Verdict, Option<String>) {
     let between = integral.jumps.then(|| "between events".to_owned());
     match integral.verdict {
@@ -162,7 +164,7 @@ fn tried(made: AnsatzSearch, options: &TheoryOptions) -> String {
     }
 }
 
-/// X = a_s X_s of those integrals that are linear in the momenta.
+/// The section on the displacements X = a_s X_s of those integrals that are linear in the momenta.
 pub(crate) fn displacements<'g>(ground: &Basis<'_, 'g>, integrals: &Integrals<'g>) -> Section<'g> {
     let section = |entries| Section {
         key: "cyclic_displacements",
@@ -197,7 +199,7 @@ pub(crate) fn displacements<'g>(ground: &Basis<'_, 'g>, integrals: &Integrals<'g
     section(integrals.conserved().filter_map(entry).collect())
 }
 
-/// a_s X_s, with operators of velocities as ∂/∂x.
+/// The text of a_s X_s, in which the operators of velocities are written ∂/∂x.
 fn written(system: &System<'_>, field: &NoetherField<'_>, style: Style) -> String {
     let (frame, eta) = (system.frame(), system.quasi_velocities());
     let is_lagrange = frame.velocities(eta) == eta;

@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use crate::theory::description::{Entry, Theory, Verdict};
 
-/// Sections by their keys, each a list of entries.
+/// The sections, under their keys, each as a list of entries.
 pub(crate) fn written(theory: &Theory<'_>) -> Value {
     let mut object = Map::new();
     object.insert("model".to_owned(), json!(theory.title));

@@ -9,10 +9,10 @@ use crate::theory::folded::folded_outside;
 use crate::words::visible::one_line;
 use crate::words::words::short;
 
-/// The most characters of a line of source, about the width of a page.
+/// The largest number of characters on a line of source, about the width of a page.
 const WIDTH: usize = 140;
 
-/// A display for each section, with a comment above it; words without formulas are comments below it.
+/// A display for each section, with a comment above it; sentences are comments below it.
 pub(crate) fn written(theory: &Theory<'_>) -> String {
     let mut page = format!("% {}: theory (needs amsmath)\n", one_line(&theory.title));
     for section in &theory.sections {
@@ -55,7 +55,7 @@ fn lines(entry: &Entry<'_>) -> Vec<String> {
     lines
 }
 
-/// Left = right, on as many lines as needed, followed by `end`.
+/// The formula `left = right` on as many lines as needed, followed by `end`.
 fn formula(left: &str, right: &str, end: &str) -> Vec<String> {
     let parts = folded_outside(right, WIDTH);
     let line = |(j, part): (usize, &String)| {
@@ -65,7 +65,7 @@ fn formula(left: &str, right: &str, end: &str) -> Vec<String> {
     parts.iter().enumerate().map(line).collect()
 }
 
-/// A name of the model as a symbol.
+/// A name of the model, written as a symbol.
 fn latex_name(name: &str) -> String {
     pc_mech::Graph::new().symbol(name).display(pc_mech::Style::Latex)
 }

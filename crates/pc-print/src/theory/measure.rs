@@ -8,7 +8,7 @@ use pc_nonholo::Voronets;
 use crate::theory::basis::Basis;
 use crate::theory::description::{Entry, Section, Side, Verdict};
 
-/// N of N dx dy.
+/// The section on the density N of the invariant measure N dx dy.
 pub(crate) fn section<'g>(ground: &Basis<'_, 'g>) -> Result<Section<'g>, ModelError> {
     let section = |entries| {
         Ok(Section { key: "invariant_measure", title: "Invariant measure", names: Vec::new(), entries })
@@ -51,7 +51,7 @@ fn open<'g>(words: &str) -> Entry<'g> {
     Entry::words(words).with(Verdict::Open)
 }
 
-/// N of dτ = N dt, and the Lagrangian in that time.
+/// The section on N in dτ = N dt, and on the Lagrangian in that time.
 pub(crate) fn multiplier<'g>(ground: &Basis<'_, 'g>) -> Section<'g> {
     let section = |entries| Section {
         key: "reducing_multiplier",
@@ -83,13 +83,13 @@ pub(crate) fn multiplier<'g>(ground: &Basis<'_, 'g>) -> Section<'g> {
     ])
 }
 
-/// Chaplygin's reducing multiplier of a model; also none if the equations are not Voronets' in independent
-/// coordinates, or have no closed form.
+/// Chaplygin's reducing multiplier of a model; none if none is found, if there are no equations of Voronets'
+/// form, or if they have no closed form.
 pub fn reducing_multiplier<'g>(assembly: &Assembly<'g>) -> Option<ReducingMultiplier<'g>> {
     ReducingMultiplier::of(&voronets(assembly)?).ok()?
 }
 
-/// The equations of independent velocities, if the constraints are solved for the others.
+/// The equations of independent velocities, if the constraints can be solved for the others.
 fn voronets<'g>(assembly: &Assembly<'g>) -> Option<Voronets<'g>> {
     let held = assembly.constraints.multipliers()?.in_velocities().ok()?;
     let mut transform = assembly.system.velocity_transform().ok()?;

@@ -10,8 +10,8 @@ use crate::language::latex::whole;
 use crate::layout::layout::Layout;
 use crate::theory::description::{Section, Side, Theory};
 
-/// Writes all expressions of a page in order, using the definitions of the model for expressions of
-/// equal value.
+/// Writes all expressions of a page in order, using the names that the model defines for expressions of equal
+/// value.
 pub(crate) fn write<'g>(theory: &mut Theory<'g>, assembly: &Assembly<'g>) {
     let graph = assembly.system.graph();
     let page = graph.page(Folding::Structural);
@@ -45,7 +45,7 @@ impl<'g> Section<'g> {
         sides.filter_map(|side| side.expression)
     }
 
-    /// Writes the expressions in these lines of the page, and the names first used in one of them.
+    /// Writes the expressions on these lines of the page, and the names first used on one of them.
     fn write(
         &mut self,
         names: &Names<'_>,

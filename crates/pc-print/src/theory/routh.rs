@@ -7,7 +7,7 @@ use pc_model::ModelError;
 use crate::theory::basis::Basis;
 use crate::theory::description::{Entry, Section, Side};
 
-/// The momenta of cyclic coordinates, the Routhian, and the equations that remain.
+/// The section on the momenta of cyclic coordinates, the Routhian, and the equations that remain.
 pub(crate) fn section<'g>(ground: &Basis<'_, 'g>) -> Result<Section<'g>, ModelError> {
     let section =
         |entries| Ok(Section { key: "routh", title: "Routh's reduction", names: Vec::new(), entries });

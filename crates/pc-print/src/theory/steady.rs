@@ -9,13 +9,13 @@ use crate::theory::basis::Basis;
 use crate::theory::description::{Entry, Section, Verdict};
 use crate::words::words::short;
 
-/// The remainder that Newton's method leaves in place of a zero.
+/// Numbers up to this size count as zero: Newton's method leaves such remainders in place of zeros.
 const ZERO: f64 = 1e-9;
 
-/// The most members of families that are listed.
+/// The largest number of members of families that are listed.
 const MOST_LISTED: usize = 8;
 
-/// All steady motions found, or the nearest of many.
+/// The section on all steady motions found, or on the nearest of many.
 pub(crate) fn section<'g>(
     ground: &Basis<'_, 'g>,
     integrals: &Integrals<'g>,
@@ -98,7 +98,7 @@ fn entry<'g>(number: usize, found: &FoundSteadyMotion) -> Entry<'g> {
     .with_on("stability", verdict)
 }
 
-/// The stability, and how it is known, in words.
+/// The stability in words, with the criterion that shows it.
 pub fn stability_in_words(stability: &Stability) -> String {
     match stability {
         Stability::BySecondVariation { variables: None } => {
@@ -122,7 +122,7 @@ pub fn stability_in_words(stability: &Stability) -> String {
     }
 }
 
-/// The eigenvalues, conjugate ones together, equal ones counted: `0.5, ±2i, 0 (twice)`.
+/// The eigenvalues in words, with conjugate ones together and equal ones counted: `0.5, ±2i, 0 (twice)`.
 pub fn eigenvalues_in_words(eigenvalues: &[Eigenvalue], zero: f64) -> Vec<String> {
     let part = |value: f64| if value.abs() <= zero { 0.0 } else { value };
     let mut counted: Vec<(String, usize)> = Vec::new();

@@ -7,10 +7,10 @@ use crate::words::lines::columns;
 use crate::words::visible::one_line;
 use crate::words::words::{short, wrapped};
 
-/// The most columns of a line.
+/// The largest number of columns of a line.
 const WIDTH: usize = 100;
 
-/// Titles with the entries under them.
+/// The titles, each with its entries below.
 pub(crate) fn written(theory: &Theory<'_>) -> String {
     let section = |section: &Section<'_>| {
         let names = section
@@ -25,7 +25,8 @@ pub(crate) fn written(theory: &Theory<'_>) -> String {
     underlined(&format!("{}: theory", one_line(&theory.title))) + &sections.join("\n")
 }
 
-/// Name, formulas with their verdict, then the remaining lines, indented further.
+/// The lines of an entry: its name and its formulas with their verdict, then the remaining lines, indented
+/// further.
 fn lines(entry: &Entry<'_>) -> Vec<String> {
     let mut verdict = entry.verdict.map(|(subject, verdict)| match subject {
         None => verdict.in_words(),
@@ -65,7 +66,7 @@ fn lines(entry: &Entry<'_>) -> Vec<String> {
     all
 }
 
-/// Words on lines of at most `width` characters.
+/// The words, divided into lines of at most `width` characters.
 fn in_lines(words: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in words.split(' ') {
@@ -80,7 +81,7 @@ fn in_lines(words: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// The line, broken if long, indented further unless it is the first.
+/// The line, broken if it is long, and indented if `further` is set.
 fn indented(line: &str, further: bool) -> Vec<String> {
     let margin = if further { "    " } else { "" };
     let parts = if columns(line) <= WIDTH { vec![line.to_owned()] } else { folded(line, WIDTH) };

@@ -1,12 +1,12 @@
 //! Linear combinations and columns of text.
 
-/// The linear combination with those coefficients and elements, as `2*X1 - X3`; `0` if all coefficients are
-/// 0.
+/// The linear combination with these coefficients and elements, such as `2 X1 - X3`; `0` if all coefficients
+/// are 0.
 pub fn combination(terms: impl IntoIterator<Item = (String, String)>) -> String {
     combined(terms).join(" ")
 }
 
-/// The terms of the combination, all except the first with their sign and a space before them.
+/// The terms of the combination, all except the first preceded by their sign and a space.
 pub(crate) fn combined(terms: impl IntoIterator<Item = (String, String)>) -> Vec<String> {
     let mut sum: Vec<String> = Vec::new();
     for (coefficient, element) in terms.into_iter().filter(|(coefficient, _)| coefficient != "0") {
@@ -35,7 +35,7 @@ fn is_sum(text: &str) -> bool {
     outside.contains(" + ") || outside.contains(" - ")
 }
 
-/// The text outside of brackets.
+/// The part of the text that is outside all brackets.
 fn outside_of_brackets(text: &str) -> String {
     let mut depth = 0usize;
     let is_outside = |c: &char| {
@@ -49,12 +49,12 @@ fn outside_of_brackets(text: &str) -> String {
     text.chars().filter(is_outside).collect()
 }
 
-/// Whether it is a quotient of more than numbers.
+/// Whether the text is a quotient that contains more than numbers.
 fn is_quotient(text: &str) -> bool {
     outside_of_brackets(text).contains('/') && text.chars().any(char::is_alphabetic)
 }
 
-/// Number of characters, each one column wide.
+/// The number of characters, each one column wide.
 pub fn columns(text: &str) -> usize {
     text.chars().count()
 }

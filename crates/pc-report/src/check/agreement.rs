@@ -4,7 +4,7 @@ use pc_print::columns;
 use pc_verify::{Agreement, VerifyError};
 use serde_json::{Value, json};
 
-/// An agreement as lines of a report of this width.
+/// An agreement, or the reason why there is none, as lines of a report of this width.
 pub(super) fn lines(outcome: &Result<Agreement, VerifyError>, width: usize) -> Vec<String> {
     match outcome {
         Ok(agreement) => {
@@ -17,7 +17,7 @@ pub(super) fn lines(outcome: &Result<Agreement, VerifyError>, width: usize) -> V
     }
 }
 
-/// The first line of a text, cut to the width.
+/// The first line of a text, cut to this width.
 fn clipped(text: &str, width: usize) -> String {
     let line = text.lines().next().unwrap_or_default();
     if columns(line) <= width {

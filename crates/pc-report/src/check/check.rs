@@ -32,19 +32,19 @@ pub struct Check<'g> {
     negative_energy: bool,
     /// Remarks on masses that change in time.
     changing_masses: Option<String>,
-    /// The number of its rows.
+    /// The number of rows of the mass matrix.
     free: usize,
     t_start: f64,
     start: Vec<f64>,
     largest_rate: f64,
     pub(super) frame: FrameFacts<'g>,
-    /// Each with its kind.
+    /// The constraints, each with its kind.
     constraints: Vec<(String, String)>,
     pub(super) classified: Vec<ClassifiedConstraint>,
     redundant: Vec<Redundant>,
-    /// The number of integrable combinations.
+    /// The number of integrable combinations of constraints.
     integrable_combinations: usize,
-    /// The combinations that are found.
+    /// The integrable combinations that were found.
     combinations: Vec<IntegrableCombination<'g>>,
     start_residual: f64,
     pub(super) integrals: Integrals<'g>,
@@ -55,7 +55,7 @@ pub struct Check<'g> {
 }
 
 impl<'g> Check<'g> {
-    /// The properties of an assembled model with its equations in independent quasi-velocities.
+    /// The properties of an assembled model, whose equations in independent quasi-velocities are given.
     ///
     /// # Errors
     /// [`ModelError`] if some part cannot be derived.
@@ -117,7 +117,7 @@ impl<'g> Check<'g> {
         })
     }
 
-    /// The properties with the comparison with a second derivation.
+    /// The properties, together with the result of the comparison with a second derivation.
     pub fn compared(self, second: Result<Agreement, VerifyError>) -> Check<'g> {
         Check { second: Some(second), ..self }
     }
@@ -130,7 +130,7 @@ impl<'g> Check<'g> {
         format!("{}\n{text}", one_line(&self.title))
     }
 
-    /// The results, each with a label, in lines.
+    /// The results as lines of text, each result with a label.
     pub fn entries(&self) -> Vec<(&'static str, Vec<String>)> {
         const WIDTH: usize = 78;
         let k = self.quasi_velocities.len();
@@ -243,7 +243,8 @@ impl<'g> Check<'g> {
     }
 }
 
-/// The algebra of the operators in words, for the present values of the parameters if it depends on them.
+/// The algebra of the operators in words; if it depends on the parameters, it is that for their present
+/// values.
 fn algebra(system: &System<'_>) -> String {
     let (always, bound) = (system.structure(), system.with_parameters_bound());
     match bound.structure().are_constant() && !always.are_constant() {
@@ -252,7 +253,7 @@ fn algebra(system: &System<'_>) -> String {
     }
 }
 
-/// Whether an identity with this numerical residual, relative to its terms, holds.
+/// States in words whether an identity holds, given its numerical residual relative to its terms.
 pub(super) fn held(residual: f64) -> String {
     match Identity::of(residual) {
         Identity::Proved => "holds identically".to_owned(),
@@ -262,7 +263,8 @@ pub(super) fn held(residual: f64) -> String {
     }
 }
 
-/// The steady motion near the start of the equations of a model; `motion` is the integrated one.
+/// The steady motion near the start of the equations of a model; `motion` is compiled from the equations that
+/// are integrated.
 fn steady_motion<'g>(
     assembly: &Assembly<'g>,
     equations: &Equations<'g>,
@@ -285,7 +287,7 @@ fn steady_motion<'g>(
     SteadySearch::near(equations, &mut independent, at, integrals, &assembly.held_positions())
 }
 
-/// The constraints, dropped ones last, each with its kind.
+/// The constraints, each with its kind; those that were dropped come last.
 fn constraints(assembly: &Assembly<'_>) -> Vec<(String, String)> {
     let classified = assembly.constraints.classified().iter();
     let binding =
@@ -307,7 +309,7 @@ fn dropped_object(redundant: &Redundant) -> Value {
     json!({ "name": redundant.constraint, "follows_from": redundant.follows_from })
 }
 
-/// The largest value at the start of the functions that should vanish.
+/// The largest value that the functions which should vanish have at the start.
 fn start_residual(assembly: &Assembly<'_>, near: &Neighbourhood<'_>) -> f64 {
     let Some(multipliers) = assembly.constraints.multipliers() else { return 0.0 };
     let graph = assembly.system.graph();

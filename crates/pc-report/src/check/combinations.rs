@@ -5,8 +5,8 @@ use pc_nonholo::IntegrableCombination;
 use pc_print::{columns, combination};
 use serde_json::{Value, json};
 
-/// A formula that does not fit on a line is put on a separate line; one with more columns than this is left
-/// out.
+/// The width of a line, in columns: a formula that does not fit on the line is put on a separate line, and
+/// one wider than this is left out.
 const WIDEST: usize = 100;
 
 /// μ_1 φ_1 + …
@@ -15,7 +15,7 @@ fn written(found: &IntegrableCombination<'_>) -> String {
     combination(terms.map(|(name, mu)| (mu.display(Style::Book), name.clone())))
 }
 
-/// The combinations found, with their integrals, and how many of the `count` remain unknown.
+/// The combinations found, with their integrals, and how many of `count` remain unknown.
 pub(super) fn lines(found: &[IntegrableCombination<'_>], count: usize) -> Vec<String> {
     let line = |found: &IntegrableCombination<'_>| {
         let integral = format!("{} = const", found.integral.display(Style::Book));

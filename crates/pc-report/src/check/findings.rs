@@ -9,15 +9,15 @@ use crate::check::steady;
 /// An entry of the row.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Finding {
-    /// A number; NaN if there is none.
+    /// A number; NaN if there is no value.
     Number(f64),
     /// Words.
     Words(String),
 }
 
 impl Check<'_> {
-    /// The names of the [findings](Check::findings), and whether they are numbers: rank of the frame; closure, Jacobi's identity and
-    /// algebra in words; rank of the mass matrix; binding constraints and how many of them are nonholonomic; whether all binding
+    /// The names of the [findings](Check::findings), each with whether it is a number: rank of the frame; closure, Jacobi's identity
+    /// and algebra in words; rank of the mass matrix; binding constraints and how many of them are nonholonomic; whether all binding
     /// constraints are integrable; integrals and how many are proved; stability of the steady motion near the start, and its distance;
     /// the deviation of the second derivation, and the number of states at which it was compared.
     pub const FINDINGS: [(&'static str, bool); 14] = [

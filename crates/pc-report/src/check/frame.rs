@@ -6,12 +6,12 @@ use pc_mech::{StructureCoefficients, Style};
 use pc_print::{recognised, wrapped};
 use serde_json::{Value, json};
 
-/// The variables of the functions that the constraints of a frame keep constant.
+/// The functions that the constraints of a frame keep constant, written with their variables.
 fn of(of_time: bool) -> &'static str {
     if of_time { "f(x, t)" } else { "f(x)" }
 }
 
-/// The constraints in words.
+/// The constraints that the frame imposes, in words.
 pub(super) fn constraints(frame: &FrameFacts<'_>) -> Option<String> {
     frame.constraints.as_ref().map(|constraints| match constraints {
         FrameConstraints::Integrable { count: 1, of_time } => {
@@ -26,7 +26,8 @@ pub(super) fn constraints(frame: &FrameFacts<'_>) -> Option<String> {
     })
 }
 
-/// The holonomic quasi-velocities, in lines of `width` characters; none if the frame does not decide it.
+/// The holonomic quasi-velocities, on lines of `width` characters; none if the frame does not determine which
+/// these are.
 pub(super) fn holonomic(frame: &FrameFacts<'_>, width: usize) -> Vec<String> {
     if frame.lagrangian && !frame.holonomy.is_empty() {
         return vec!["all, the velocities of the coordinates".to_owned()];
@@ -65,7 +66,7 @@ pub(super) fn objects(frame: &FrameFacts<'_>) -> (Value, Value) {
     (constraints, json!(holonomic))
 }
 
-/// The algebra of the operators in words; `constant` states when they form an algebra.
+/// The algebra of the operators in words; `constant` is the phrase for constant structure coefficients.
 pub(super) fn algebra(structure: &StructureCoefficients<'_>, constant: &str) -> String {
     if let Some(name) = recognised(structure) {
         return format!("{name}, {constant}");
@@ -81,7 +82,7 @@ pub(super) fn algebra(structure: &StructureCoefficients<'_>, constant: &str) -> 
     format!("{constant}, not one of the catalogue{facts}")
 }
 
-/// The kind of the algebra, its rank and its index.
+/// The kind of an algebra, its rank and its index, in words.
 fn facts(algebra: &LieAlgebra) -> Result<String, AlgebraError> {
     let kind = if algebra.is_abelian() {
         "commutative except for time"

@@ -5,7 +5,7 @@ use pc_mech::{Identity, Style};
 use pc_print::{columns, short};
 use serde_json::{Value, json};
 
-/// A formula with more columns is not printed after the verdict.
+/// A formula wider than this, in columns, is not printed after the verdict.
 const WIDEST: usize = 100;
 
 /// The origin of an integral, in words.
@@ -21,7 +21,7 @@ fn how(origin: &Origin) -> &'static str {
     }
 }
 
-/// The verdict; `jumps`: whether an event may change it.
+/// The verdict in words; `jumps` says whether an event may change the integral.
 fn words(verdict: ConservationVerdict<'_>, jumps: bool) -> String {
     let between = if jumps { " between events" } else { "" };
     match verdict {
@@ -48,7 +48,8 @@ fn words(verdict: ConservationVerdict<'_>, jumps: bool) -> String {
     }
 }
 
-/// The verdict, with the formula of an integral that is not declared, and that of the rate of the energy.
+/// The verdict, with the formula for an integral that is not declared, and that for the rate of change of the
+/// energy.
 pub(super) fn lines(integral: &Integral<'_>) -> Vec<String> {
     let words = words(integral.verdict, integral.jumps);
     if let (Origin::Energy, ConservationVerdict::Rate { rate, at_start, .. }) =

@@ -6,13 +6,13 @@ use pc_model::Assembly;
 use pc_print::{columns, combination, reducing_multiplier};
 use serde_json::{Value, json};
 
-/// A formula with more columns is not printed.
+/// A formula wider than this, in columns, is not printed.
 const WIDEST: usize = 80;
 
-/// The results about the measure.
+/// The results about the invariant measure.
 #[derive(Clone, Debug)]
 pub(super) struct Measure<'g> {
-    /// `None` if a constraint is not affine in the velocities.
+    /// The result of the search; `None` if a constraint is not affine in the velocities.
     search: Option<MeasureSearch<'g>>,
     /// Whether there are as many free quasi-velocities as coordinates.
     square: bool,
@@ -23,7 +23,7 @@ pub(super) struct Measure<'g> {
 }
 
 impl<'g> Measure<'g> {
-    /// The measure of a model; `at` are values of time, state and parameters at the start.
+    /// The measure of a model; `at` has the values of time, state and parameters at the start.
     pub(super) fn of(assembly: &Assembly<'g>, at: &[(Expr<'g>, f64)]) -> Measure<'g> {
         let jumps = assembly.events.iter().any(|event| !event.resets.is_empty());
         if assembly.constraints.nonlinear().is_some() {
@@ -63,7 +63,7 @@ impl<'g> Measure<'g> {
         [known].into_iter().chain(multiplier).collect()
     }
 
-    /// As JSON; null if none is known.
+    /// The measure as JSON; null if none is known.
     pub(super) fn object(&self) -> Value {
         let Some(MeasureSearch::Found(measure)) = &self.search else { return Value::Null };
         let text = |value: &Option<Expr<'_>>| value.map(|value| value.to_string());
@@ -78,7 +78,8 @@ impl<'g> Measure<'g> {
     }
 }
 
-/// `r dx dy, r³ dx dη, Liouville's`; `square` is whether det b is a determinant.
+/// The measure in words, such as `r dx dy, r³ dx dη, Liouville's`; `square` says whether b is square, so that
+/// it has a determinant.
 fn words(measure: &PhaseMeasure<'_>, square: bool) -> String {
     let written = |density: Option<Expr<'_>>| {
         let formula = density.map(|density| density.display(Style::Book));

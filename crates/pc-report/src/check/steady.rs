@@ -4,7 +4,8 @@ use pc_analysis::{NearbySteadyMotion, SteadySearch};
 use pc_print::{eigenvalues_in_words, short, stability_in_words, wrapped};
 use serde_json::{Map, Value, json};
 
-/// Its state, its distance from the start, eigenvalues and verdict, in lines of `width` characters.
+/// The state of a steady motion, its distance from the start, its eigenvalues and the verdict, on lines of
+/// `width` characters.
 fn motion_lines(steady: &NearbySteadyMotion, width: usize) -> Vec<String> {
     let assigned = |name: &str, value: f64| format!("{name} = {}", rounded(value));
     let state = steady.state.iter().map(|(name, value)| assigned(name, *value));
@@ -41,7 +42,7 @@ fn motion_object(steady: &NearbySteadyMotion) -> Value {
     })
 }
 
-/// Why there is no motion to describe; none if one was found.
+/// The reason why there is no motion to describe; none if one was found.
 fn missing(search: &SteadySearch) -> Option<String> {
     Some(match search {
         SteadySearch::NotAutonomous => "not looked for: the equations depend on time".to_owned(),
@@ -66,7 +67,7 @@ pub(super) fn lines(search: &SteadySearch, width: usize) -> Vec<String> {
     }
 }
 
-/// The verdict on stability, or why there is none.
+/// The verdict on stability, or the reason why there is none.
 pub(super) fn verdict(search: &SteadySearch) -> String {
     match search {
         SteadySearch::Found(steady) => stability_in_words(&steady.stability()),
@@ -90,10 +91,10 @@ pub(super) fn object(search: &SteadySearch) -> Value {
     }
 }
 
-/// The remainder that Newton's method leaves in place of a zero.
+/// Numbers up to this size count as zero: Newton's method leaves such remainders in place of zeros.
 const ZERO: f64 = 1e-9;
 
-/// Six digits; the remainder that Newton's method leaves in place of a zero is printed as zero.
+/// A number in six digits; remainders that Newton's method leaves in place of zeros are printed as zero.
 fn rounded(value: f64) -> String {
     if value.abs() <= ZERO { "0".to_owned() } else { short(value, 6) }
 }

@@ -1,12 +1,12 @@
-//! Errors of pictures as files.
+//! Errors in writing pictures as files.
 
-/// A picture that cannot be a file.
+/// The reason why a picture cannot be written as a file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PictureError {
     /// The built-in font cannot be read.
     #[error("the built-in font cannot be read")]
     Font,
-    /// The picture is too large for memory.
+    /// The picture is too large.
     #[error("a picture of {width} × {height} points is too large")]
     Size {
         /// Its width.

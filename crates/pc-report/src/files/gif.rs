@@ -1,4 +1,4 @@
-//! A sequence of drawings as GIF.
+//! A sequence of drawings as an animated GIF.
 
 use crate::picture::Drawing;
 use gif::{Encoder, Frame, Repeat};
@@ -7,19 +7,19 @@ use crate::files::error::PictureError;
 use crate::files::glyphs::Glyphs;
 use crate::files::png::{opaque, painted};
 
-/// Pixels per point.
+/// The number of pixels per point.
 const SCALE: f32 = 1.0;
-/// Stills per second.
+/// The number of frames per second.
 const RATE: f64 = 25.0;
-/// Duration of a still at this rate, in hundredths of a second.
+/// The duration of a still at this rate, in hundredths of a second.
 const DELAY: u16 = 4;
-/// The most stills of a film: longer motions are shown faster.
+/// The largest number of intervals between the stills of a film: longer motions are shown faster.
 const MOST: usize = 250;
-/// Speed of the choice of colours, from 1 (best) to 30; 1 takes ten times as long, and lines on
-/// white look the same.
+/// The speed at which colours are chosen, from 1 (best) to 30; 1 takes ten times as long, and lines on white
+/// look the same.
 const SPEED: i32 = 10;
 
-/// The numbers of those stills at `times` that show the motion at its true speed.
+/// The indices of those stills, which are at `times`, that show the motion at its true speed.
 pub fn stills(times: &[f64]) -> Vec<usize> {
     let (Some(first), Some(last)) = (times.first(), times.last()) else { return Vec::new() };
     let span = last - first;
@@ -28,13 +28,13 @@ pub fn stills(times: &[f64]) -> Vec<usize> {
     (0..=intervals).map(|i| nearest(times, time(i))).collect()
 }
 
-/// The index of the nearest time.
+/// The index of that one of `times` that is nearest to `time`.
 pub fn nearest(times: &[f64], time: f64) -> usize {
     let distance = |&i: &usize| (times[i] - time).abs();
     (0..times.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
 }
 
-/// The film, which repeats.
+/// The drawings as a film that repeats.
 ///
 /// # Errors
 /// [`PictureError`]

@@ -1,4 +1,4 @@
-//! Outlines of the built-in font: pictures depend on no font of the system.
+//! Outlines of the built-in font: pictures do not depend on the fonts of the system.
 
 use crate::picture::Anchor;
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
@@ -22,7 +22,7 @@ impl Glyphs {
         Face::parse(dejavu::sans::regular(), 0).map(|face| Glyphs { face }).map_err(|_| PictureError::Font)
     }
 
-    /// Units of the font per height of a text.
+    /// The number of units of the font per height of a text.
     pub(super) fn units(&self) -> f64 {
         f64::from(self.face.units_per_em())
     }
@@ -46,12 +46,12 @@ impl Glyphs {
         placed
     }
 
-    /// The distance to the next character.
+    /// The distance from a character to the next.
     pub(super) fn advance(&self, glyph: GlyphId) -> f64 {
         f64::from(self.face.glyph_hor_advance(glyph).unwrap_or(0))
     }
 
-    /// Draws the outline, with y pointing up.
+    /// Draws the outline of a character, with y pointing up.
     pub(super) fn outline(&self, glyph: GlyphId, builder: &mut impl OutlineBuilder) {
         // A space has no outline.
         let _ = self.face.outline_glyph(glyph, builder);

@@ -1,7 +1,7 @@
-//! Drawings as a page of PDF [ISO 32000-1], with text that can be found and copied.
+//! Drawings as a page of PDF [ISO 32000-1], with text that can be searched and copied.
 //!
-//! Characters are procedures of fonts of type 3 (9.6.5), so that the file contains only the
-//! characters used; a table gives the Unicode of each (9.10.3). The content is compressed by
+//! Characters are written as procedures of fonts of type 3 (9.6.5), so that the file contains only the
+//! characters that are used; a table gives the Unicode of each (9.10.3). The content is compressed with
 //! deflate (7.4.4).
 
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ use ttf_parser::{GlyphId, OutlineBuilder};
 use crate::files::error::PictureError;
 use crate::files::glyphs::Glyphs;
 
-/// The most characters of a font: their codes are one byte, without 0.
+/// The largest number of characters of a font: their codes are single bytes other than 0.
 const CODES: usize = 255;
 
 /// The page.
@@ -107,7 +107,7 @@ struct Fonts<'g> {
 }
 
 impl Fonts<'_> {
-    /// The number of the font of a character, and its code there.
+    /// The number of the font that contains a character, and the code of the character in that font.
     fn code(&mut self, glyph: GlyphId, character: char) -> (usize, usize) {
         let next = self.characters.len();
         let place = *self.known.entry(character).or_insert(next);
@@ -160,7 +160,7 @@ impl Fonts<'_> {
     }
 }
 
-/// Lines of a table, in blocks of at most 100.
+/// The lines of a table, divided into blocks of at most 100.
 fn blocks(lines: &str) -> String {
     let lines: Vec<&str> = lines.lines().collect();
     let block = |some: &[&str]| format!("{} beginbfchar\n{}\nendbfchar\n", some.len(), some.join("\n"));
@@ -204,8 +204,8 @@ impl OutlineBuilder for Outline {
     }
 }
 
-/// A file as written so far, with the offset of each object; number 0 is not used, 1 to 3 are
-/// for the page.
+/// The file as written so far, with the offset of each object; number 0 is not used, and 1 to 3 are for the
+/// page.
 struct File {
     bytes: Vec<u8>,
     places: Vec<usize>,
@@ -235,7 +235,7 @@ impl File {
         Ok(number)
     }
 
-    /// The file with its table of offsets.
+    /// The complete file, ending with its table of offsets.
     fn end(mut self) -> Vec<u8> {
         let (start, count) = (self.bytes.len(), self.places.len());
         let entries: String =

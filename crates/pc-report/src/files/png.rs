@@ -9,10 +9,10 @@ use ttf_parser::OutlineBuilder;
 use crate::files::error::PictureError;
 use crate::files::glyphs::Glyphs;
 
-/// Pixels per point.
+/// The number of pixels per point.
 const SCALE: f32 = 2.0;
 
-/// The bitmap, on white.
+/// The drawing as a bitmap on white.
 ///
 /// # Errors
 /// [`PictureError`]
@@ -105,7 +105,7 @@ fn stroke(ink: Ink) -> Stroke {
     }
 }
 
-/// Red, green and blue of each pixel.
+/// The red, green and blue of each pixel.
 pub(super) fn opaque(pixels: &Pixmap) -> Vec<u8> {
     pixels.data().chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
 }

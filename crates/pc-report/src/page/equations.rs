@@ -6,10 +6,10 @@ use pc_print::{DisplayedEquations, Form, Layout, displayed_equations};
 use crate::page::formulas;
 use crate::page::html::{lines, paragraph, text};
 
-/// Equations of more bytes are left to `pc derive`, so that a page stays below a megabyte.
+/// Equations that take more bytes than this are left to `pc derive`, so that a page stays below a megabyte.
 const LONGEST: usize = 120_000;
 
-/// Poincaré's equations, then the other forms.
+/// Poincaré's equations, followed by the other forms.
 pub(super) fn equations(title: &str, assembly: &Assembly<'_>, layout: &Layout) -> Result<String, ModelError> {
     let first = displayed_equations(Form::Poincare, layout, title, assembly)?;
     let mut shown = form(&first, Form::Poincare);

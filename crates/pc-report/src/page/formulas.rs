@@ -1,4 +1,4 @@
-//! Formulas, each with its source to copy.
+//! Formulas, each with its source for copying.
 
 use std::borrow::Cow;
 
@@ -6,16 +6,16 @@ use pc_print::{Display, DisplayedPart};
 
 use crate::page::html::{lines, text};
 
-/// The lines of a formula kept together: page breaks fall between such parts, and a part longer than a page
-/// would be cut.
+/// The number of lines of a formula that are kept together: page breaks fall between such parts, and a part
+/// longer than a page would be cut.
 const LINES: usize = 10;
 
-/// A formula in a box that scrolls separately; browsers let the keyboard reach such boxes.
+/// A formula in a box that scrolls separately; browsers make such boxes accessible from the keyboard.
 pub(super) fn formula(mathml: &str) -> String {
     format!("<div class=\"formula\">{}</div>\n", in_parts(mathml))
 }
 
-/// A long table of lines as several tables.
+/// A long table of lines, divided into several tables.
 fn in_parts(mathml: &str) -> Cow<'_, str> {
     let (Some(start), Some(end)) = (mathml.find("<mtr>"), mathml.rfind("</mtr>")) else {
         return mathml.into();
@@ -29,7 +29,7 @@ fn in_parts(mathml: &str) -> Cow<'_, str> {
     lines.chunks(LINES).map(|part| format!("{head}{}{tail}", part.concat())).collect::<String>().into()
 }
 
-/// The LaTeX source.
+/// The LaTeX source, hidden until it is opened.
 pub(super) fn source(latex: &str) -> String {
     format!(
         "<details><summary>LaTeX</summary><pre tabindex=\"0\"><code>{}</code></pre></details>\n",
@@ -37,7 +37,7 @@ pub(super) fn source(latex: &str) -> String {
     )
 }
 
-/// Parts under headings of one level.
+/// Parts under headings of the given level.
 pub(super) fn parts(list: &[DisplayedPart], level: u8) -> String {
     list.iter().map(|part| self::part(part, level)).collect()
 }

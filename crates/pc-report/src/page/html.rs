@@ -1,13 +1,13 @@
-//! Elements, and text without markup.
+//! Elements of a page, and text whose markup characters are escaped.
 
 use pc_print::{one_line, visible};
 
-/// Text of one line between elements or within quotation marks.
+/// Text on one line, for use between elements or within quotation marks.
 pub(crate) fn text(text: &str) -> String {
     escaped(&one_line(text))
 }
 
-/// Text of several lines.
+/// Text on several lines, for use between elements.
 pub(crate) fn lines(text: &str) -> String {
     escaped(&visible(text))
 }
@@ -29,7 +29,7 @@ fn escaped(text: &str) -> String {
     safe
 }
 
-/// A part of a page, with a heading that the table of contents leads to.
+/// A part of a page, with a heading to which the table of contents links.
 pub(crate) struct Part {
     pub(crate) id: &'static str,
     pub(crate) title: &'static str,
@@ -54,7 +54,7 @@ pub(crate) fn paragraph(words: &str) -> String {
     format!("<p>{}</p>\n", text(words))
 }
 
-/// Labels with their lines.
+/// A table of labels, each with its lines.
 pub(crate) fn described<L: AsRef<str>>(entries: &[(L, Vec<String>)]) -> String {
     let entry = |(label, all): &(L, Vec<String>)| {
         let all: Vec<String> = all.iter().map(|line| text(line)).collect();

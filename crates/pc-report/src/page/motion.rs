@@ -1,4 +1,4 @@
-//! The motion: curves, drift, portraits, and the summary of the run.
+//! The part on the motion: curves, drift, portraits, and the summary of the run.
 
 use crate::page::html::{described, paragraph, text};
 use crate::picture::chart::figure;
@@ -6,12 +6,13 @@ use crate::picture::motion::{of_kind, portrait, title};
 use crate::picture::{Ink, Panel};
 use crate::recording::Recording;
 
-/// The most charts of a kind; the table of `pc run` has the others.
+/// The largest number of charts of a kind; the table of `pc run` has the remaining columns.
 const MOST_CHARTS: usize = 8;
-/// Points of a curve.
+/// The largest number of points of a curve.
 const MOST_POINTS: usize = 1500;
 
-/// Charts by kind, the most informative pairs of columns over each other, then the summary.
+/// Charts ordered by kind, charts of the most informative pairs of columns, one column against the other,
+/// then the summary.
 pub(super) fn motion(record: &Recording, pairs: &[(String, String)]) -> String {
     let mut shown = String::new();
     if let Some(remark) = &record.remark {

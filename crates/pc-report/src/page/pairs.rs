@@ -1,12 +1,12 @@
-//! The most informative pairs of columns of a motion, one over the other.
+//! The most informative pairs of columns of a motion, to be drawn one against the other.
 
 use pc_model::Assembly;
 
 use crate::picture::motion::{are_alike, moves};
 use crate::recording::{ColumnKind, Recording};
 
-/// Each coordinate with the quasi-velocity that is its rate, then successive components of one vector; only
-/// columns that change.
+/// The pairs of each coordinate with the quasi-velocity that is its rate, then of successive components of
+/// one vector; columns that do not change are left out.
 pub(super) fn pairs(assembly: &Assembly<'_>, record: &Recording) -> Vec<(String, String)> {
     let (system, samples) = (&assembly.system, record.curves());
     let shown = |name: &str| samples.column(name).is_ok_and(|(_, values)| moves(values));

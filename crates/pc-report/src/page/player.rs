@@ -1,17 +1,17 @@
-//! The motion in a player: a canvas, a few controls, the script that draws.
+//! A player for the motion: a canvas, a few controls, and the script that draws.
 
 use pc_print::visible_json;
 
 use crate::page::html::{Part, page, text};
 use crate::scene::Scene;
 
-/// A page with the motion alone.
+/// A page that shows only the motion.
 pub fn animation(title: &str, scene: &Scene) -> String {
     let body = Part::new("animation", "Motion", player(scene)).section();
     page(title, &format!("<header><h1>{}</h1></header>\n<main>\n{body}</main>\n", text(title)))
 }
 
-/// The player, which appears where scripts run.
+/// The player, which is visible only where scripts run.
 pub(crate) fn player(scene: &Scene) -> String {
     // JSON escaped in this way contains neither `</script>` nor the end of a CDATA section.
     let data =

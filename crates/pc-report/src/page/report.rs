@@ -15,11 +15,11 @@ use crate::scene::Scene;
 
 /// The width of a line of a formula, in columns.
 const WIDTH: usize = 92;
-/// Texts of more lines are folded until opened.
+/// Texts with more lines than this are folded until they are opened.
 const LONG_TEXT: usize = 40;
 
-/// Everything known about an assembled model, and about its motion if there is one, as one page for a browser. The same
-/// model gives the same bytes.
+/// Everything that is known about an assembled model, and about its motion if there is one, as one page for a browser.
+/// The same model always results in the same bytes.
 ///
 /// # Errors
 /// [`ReportError`] if the equations cannot be derived, or a second derivation disagrees with the first.
@@ -65,7 +65,7 @@ fn body(parts: &[Part]) -> String {
     format!("<main id=\"main\">\n{}</main>\n", parts.iter().map(Part::section).collect::<String>())
 }
 
-/// Title, description, table of contents.
+/// The head of the page: title, description, table of contents.
 fn head(model: &Model, parts: &[Part]) -> String {
     let heading = &model.document().model;
     let mut head = format!(
@@ -83,7 +83,7 @@ fn head(model: &Model, parts: &[Part]) -> String {
     head + &format!("</header>\n<nav aria-label=\"Contents\">\n<ol>\n{entries}</ol>\n</nav>\n")
 }
 
-/// The text as it was read, with the present values of parameters.
+/// The text of the model as it was read, with the present values of the parameters.
 fn written(model: &Model) -> String {
     let source = model.document().source.text();
     let values: Vec<(String, Vec<String>)> =

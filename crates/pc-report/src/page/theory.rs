@@ -1,4 +1,4 @@
-//! The theory of the motions.
+//! The part of a page on the theory of the motions.
 
 use pc_print::{DisplayedEntry, DisplayedTheory};
 
@@ -6,13 +6,13 @@ use crate::page::formulas::{formula, source};
 use crate::page::html::text;
 use crate::picture::plane;
 
-/// Formulas of more bytes are left to `pc theory`.
+/// Formulas that take more bytes than this are left to `pc theory`.
 const LONGEST: usize = 60_000;
 
-/// Parts of more bytes are left out too, so that a page stays below a megabyte.
+/// Parts that take more bytes than this are left out too, so that a page stays below a megabyte.
 const LONGEST_PART: usize = 90_000;
 
-/// Each part under a heading.
+/// The parts of the theory, each under a heading.
 pub(super) fn theory(parts: &[DisplayedTheory]) -> String {
     parts.iter().map(part).collect()
 }

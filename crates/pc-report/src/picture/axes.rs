@@ -18,24 +18,24 @@ impl Axis {
         Axis { low, high, from, to }
     }
 
-    /// The place of a value.
+    /// The point at which a value lies.
     pub(crate) fn place(&self, value: f64) -> f64 {
         self.from + (value - self.low) / (self.high - self.low) * (self.to - self.from)
     }
 
-    /// The axis, widened about its middle to this length in values per point.
+    /// The axis, widened about its middle until a point corresponds to this difference of values.
     pub(crate) fn widened_to(&self, per_point: f64) -> Axis {
         let half = per_point * (self.to - self.from).abs() / 2.0;
         let middle = f64::midpoint(self.low, self.high);
         Axis { low: middle - half, high: middle + half, ..*self }
     }
 
-    /// The length in values per point.
+    /// The difference of values that corresponds to a point.
     pub(crate) fn per_point(&self) -> f64 {
         (self.high - self.low) / (self.to - self.from).abs()
     }
 
-    /// About `count` multiples of 1, 2 or 5 times a power of ten.
+    /// About `count` numbers within the axis, multiples of 1, 2 or 5 times a power of ten.
     pub(crate) fn ticks(&self, count: usize) -> Vec<f64> {
         let step = round_step((self.high - self.low) / count as f64);
         self.multiples(step, count)
@@ -50,7 +50,7 @@ impl Axis {
         (first..=last).map(|n| n as f64 * step).collect()
     }
 
-    /// About `count` values with their labels.
+    /// About `count` values within the axis, with their labels.
     pub(crate) fn labels(&self, scale: Scale, count: usize) -> Vec<(f64, String)> {
         match scale {
             Scale::Linear => {
@@ -103,7 +103,7 @@ fn linear(value: f64) -> String {
     short(value, 5).replace('-', "−")
 }
 
-/// 10 to an integer power.
+/// The text of 10 to an integer power.
 fn power(exponent: f64) -> String {
     let raised = |c: char| match c {
         '-' => '⁻',
@@ -114,7 +114,7 @@ fn power(exponent: f64) -> String {
     format!("10{}", format!("{exponent:.0}").chars().map(raised).collect::<String>())
 }
 
-/// The number among 1, 2, 5 times a power of ten whose ratio to a length is nearest to one.
+/// The number of the form 1, 2 or 5 times a power of ten whose ratio to a length is nearest to one.
 fn round_step(length: f64) -> f64 {
     let power = 10f64.powf(length.log10().floor());
     let between = [(1.0, 2.0), (2.0, 5.0), (5.0, 10.0)];
@@ -122,14 +122,14 @@ fn round_step(length: f64) -> f64 {
     step.map_or(10.0 * power, |(step, _)| step * power)
 }
 
-/// The range of some values, if any is finite.
+/// The range of some values, if any of them is finite.
 pub(crate) fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let finite = values.filter(|value| value.is_finite());
     let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
     (low <= high).then_some((low, high))
 }
 
-/// The range of some values, slightly widened; for a constant, a range about it.
+/// The range of some values, slightly widened; if they are constant, a range about the constant.
 pub(crate) fn widened(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let Some((low, high)) = range(values) else { return (0.0, 1.0) };
     if is_still(low, high) {
@@ -140,7 +140,8 @@ pub(crate) fn widened(values: impl Iterator<Item = f64>) -> (f64, f64) {
     (low - margin, high + margin)
 }
 
-/// Whether values between these are constant: smaller differences are rounding, which would look like noise.
+/// Whether values between `low` and `high` count as constant: such small differences are rounding errors,
+/// which would look like noise.
 pub(crate) fn is_still(low: f64, high: f64) -> bool {
     0.05 * (high - low) <= 1e-9 * low.abs().max(high.abs())
 }

@@ -1,13 +1,13 @@
-//! A panel drawn: axes, lines through round numbers, and contents.
+//! The drawing of a panel: axes, lines through round numbers, and contents.
 
 use crate::picture::axes::{Axis, label, range, widened};
 use crate::picture::drawing::{Anchor, Drawing, Ink};
 use crate::picture::panel::{Content, Curve, Panel, Scale};
 use crate::picture::simplify::simplified;
 
-/// The most events that are marked.
+/// The largest number of events that are marked.
 const MOST_EVENTS: usize = 60;
-/// The width of the scale of colours beside cells, with its numbers.
+/// The width of the scale of colours beside cells, including its numbers.
 const LEGEND: f64 = 96.0;
 /// The colours of values, the lowest first [Smith, van der Walt 2015].
 const COLOURS: [[u8; 3]; 9] = [
@@ -22,7 +22,7 @@ const COLOURS: [[u8; 3]; 9] = [
     [253, 231, 37],
 ];
 
-/// A panel of a page, with a description and texts in the size of the page.
+/// A panel as an element of a page, with a description, and with texts in the size used on the page.
 pub(crate) fn figure(panel: &Panel, most: usize, id: &str) -> String {
     const WIDTH: f64 = 480.0;
     const SIZE: f64 = 13.0;
@@ -116,19 +116,19 @@ impl Panel {
         }
     }
 
-    /// The range of its values, in words.
+    /// The vertical range of the panel, as the labels of its ends.
     pub(super) fn values_in_words(&self) -> (String, String) {
         let (low, high) = self.up_range();
         (label(low, self.up.1), label(high, self.up.1))
     }
 
-    /// The range to the right, in words.
+    /// The horizontal range of the panel, as the labels of its ends.
     pub(super) fn span_in_words(&self) -> (String, String) {
         let (low, high) = self.across_range();
         (label(low, self.across.1), label(high, self.across.1))
     }
 
-    /// The width of the numbers beside its axis.
+    /// The width that the numbers beside the vertical axis need.
     pub(super) fn margin(&self, height: f64, size: f64) -> f64 {
         let axis = Axis::new(self.up_range(), (height, 0.0));
         let labels = axis.labels(self.up.1, count(height, 38.0));
@@ -136,7 +136,7 @@ impl Panel {
         (widest + 12.0).max(36.0)
     }
 
-    /// Draws it on axes around `frame`, with texts of this size and curves of at most `most` points.
+    /// Draws the panel on axes around `frame`, with texts of this size and curves of at most `most` points.
     pub(super) fn draw(&self, drawing: &mut Drawing, frame: Frame, size: f64, most: usize) {
         let frame = match self.content {
             Content::Cells { .. } => Frame { right: frame.right - LEGEND, ..frame },
@@ -187,7 +187,7 @@ impl Panel {
         }
     }
 
-    /// Numbers beside the axes, and lines through them.
+    /// Draws numbers beside the axes, and lines through them.
     fn mesh(&self, drawing: &mut Drawing, frame: Frame, (across, up): (&Axis, &Axis), size: f64) {
         let is_open = !matches!(self.content, Content::Cells { .. });
         for (value, label) in up.labels(self.up.1, count(frame.bottom - frame.top, 38.0)) {
@@ -213,15 +213,15 @@ impl Panel {
     }
 }
 
-/// From −π to π, slightly widened.
+/// The range from −π to π, slightly widened.
 const ANGLES: (f64, f64) = (-1.03 * std::f64::consts::PI, 1.03 * std::f64::consts::PI);
 
-/// The number of labels along a length.
+/// The number of labels along a length if each takes the length `each`; at least two.
 fn count(length: f64, each: f64) -> usize {
     ((length / each) as usize).max(2)
 }
 
-/// The curve, broken where it has no value.
+/// Draws a curve, broken where it has no value.
 fn draw_curve(drawing: &mut Drawing, curve: &Curve, (across, up): (&Axis, &Axis), ink: Ink, most: usize) {
     let placed: Vec<[f64; 2]> = curve.points.iter().map(|&(x, y)| [across.place(x), up.place(y)]).collect();
     let is_there = |p: &[f64; 2]| p[0].is_finite() && p[1].is_finite();
@@ -234,7 +234,7 @@ fn draw_curve(drawing: &mut Drawing, curve: &Curve, (across, up): (&Axis, &Axis)
     pieces().filter(|piece| piece.len() > 1).for_each(|piece| drawing.line(simplified(piece, most), ink));
 }
 
-/// A colour for each value, and a scale of the colours.
+/// Draws cells with a colour for each value, and a scale of the colours.
 fn cells(
     drawing: &mut Drawing,
     (across, up): (&Axis, &Axis),
@@ -271,7 +271,7 @@ fn cells(
     }
 }
 
-/// The colour of a value from 0 to 1.
+/// The colour that represents a value from 0 to 1.
 fn colour(value: f64) -> [u8; 3] {
     let place = value.clamp(0.0, 1.0) * (COLOURS.len() - 1) as f64;
     let i = (place as usize).min(COLOURS.len() - 2);

@@ -1,6 +1,6 @@
 //! The elements of a drawing: lines, texts and areas.
 
-/// A drawing in points, x to the right and y down, in the order in which it is painted.
+/// A drawing whose lengths are in points, with x pointing to the right and y down.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drawing {
     /// Its width.
@@ -37,13 +37,13 @@ pub enum Shape {
         /// Its colour.
         ink: Ink,
     },
-    /// A line of text.
+    /// Text on one line.
     Text {
-        /// Its beginning, its middle, or its end, on its base line.
+        /// The position of its beginning, its middle, or its end, on its base line.
         at: [f64; 2],
-        /// Which point of the text is at that place.
+        /// The point of the text that is at that position.
         anchor: Anchor,
-        /// Height of the font.
+        /// The height of the font.
         size: f64,
         /// Its colour.
         ink: Ink,
@@ -52,7 +52,7 @@ pub enum Shape {
     },
 }
 
-/// Which point of a text its position refers to.
+/// The point of a text to which its position refers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     /// Its beginning.
@@ -63,7 +63,8 @@ pub enum Anchor {
     End,
 }
 
-/// Colour and width by purpose: a page has its own colours for each.
+/// The purpose of an element, which determines its colour and width; a page has its own colours for each
+/// purpose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ink {
     /// Important words.
@@ -74,13 +75,13 @@ pub enum Ink {
     Axis,
     /// Lines through round numbers.
     Grid,
-    /// The time of an event.
+    /// Lines at the times of events.
     Event,
-    /// The curve with this number.
+    /// The curve with this index.
     Curve(usize),
     /// Rods and springs of a mechanism.
     Rod,
-    /// A colour by its red, green and blue.
+    /// A colour given by its red, green and blue.
     Mixed([u8; 3]),
 }
 
@@ -100,7 +101,7 @@ impl Ink {
     /// The number of distinguishable curves.
     pub(crate) const CURVES: usize = COLOURS.len();
 
-    /// Red, green and blue on white.
+    /// Its red, green and blue on white.
     pub fn colour(self) -> [u8; 3] {
         match self {
             Ink::Text | Ink::Rod => [29, 36, 48],
@@ -112,7 +113,7 @@ impl Ink {
         }
     }
 
-    /// Width of a line.
+    /// The width of a line.
     pub fn width(self) -> f64 {
         match self {
             Ink::Curve(_) => 1.5,

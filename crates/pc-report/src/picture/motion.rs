@@ -9,24 +9,25 @@ use crate::picture::panel::{Content, Curve, Panel, Scale};
 use crate::picture::scales::groups;
 use crate::recording::{ColumnKind, Columns, Recording, Samples, UnknownColumn};
 
-/// The decimal logarithm of the smallest drift that is drawn: less is rounding.
+/// The decimal logarithm of the smallest drift that is drawn: anything smaller is rounding error.
 const FLOOR: f64 = -17.0;
-/// The greatest ratio of two lengths drawn to the same scale: beyond it, the shorter one is invisible.
+/// The greatest ratio of two lengths that are drawn to the same scale: beyond it, the shorter one is
+/// invisible.
 const MOST_UNEQUAL: f64 = 6.0;
 
 /// The requested parts of a motion.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
     /// Columns over time; `drift(NAME)` is the relative drift of NAME, `error(NAME)` its estimated error, if that is known. If
-    /// neither columns nor pairs are given, all columns.
+    /// neither columns nor pairs are given, all columns are shown.
     pub columns: Vec<String>,
-    /// Pairs of columns, the second over the first.
+    /// Pairs of columns, the second drawn against the first.
     pub pairs: Vec<(String, String)>,
-    /// Angles that are shown from −π to π.
+    /// Columns with angles that are shown from −π to π.
     pub wrapped: Vec<String>,
 }
 
-/// The title of columns of a kind.
+/// The title of the panels for columns of a kind.
 pub(crate) fn title(kind: ColumnKind) -> &'static str {
     match kind {
         ColumnKind::Coordinates => "Coordinates",
@@ -64,7 +65,7 @@ pub(crate) fn panels(record: &Recording, wanted: &Wanted) -> Result<Vec<Panel>, 
     Ok(panels)
 }
 
-/// The chosen columns: those of one kind in panels by scale, drifts separately.
+/// The panels of the chosen columns: those of one kind are grouped by scale, and drifts are drawn separately.
 fn chosen(record: &Recording, samples: &Samples, wanted: &Wanted) -> Result<Vec<Panel>, UnknownColumn> {
     let mut drifts: Vec<(String, Vec<f64>)> = Vec::new();
     let mut kinds: Vec<Columns> = Vec::new();
@@ -98,7 +99,7 @@ fn chosen(record: &Recording, samples: &Samples, wanted: &Wanted) -> Result<Vec<
     Ok(panels)
 }
 
-/// The panels of columns of one kind: integrals with their drift, others with their values.
+/// The panels of columns of one kind: integrals are shown by their drift, others by their values.
 pub(crate) fn of_kind(record: &Recording, columns: &Columns, wrapped: &[String]) -> Vec<Panel> {
     match columns.kind {
         ColumnKind::Conserved => {
@@ -139,7 +140,8 @@ fn over_time(record: &Recording, title: &str, scale: Scale, curves: Vec<Curve>) 
     Panel { span: Some(span), events: record.events.clone(), ..Panel::over("t", title, scale, curves) }
 }
 
-/// log₁₀ |I(t) − I(0)|/|I(0)|; if |I(0)| is at most the drift, the largest |I|, at least 1, replaces it.
+/// The panel of log₁₀ |I(t) − I(0)|/|I(0)|; if |I(0)| is at most the drift, the divisor is instead the
+/// largest |I|, or 1 if that is larger.
 fn drift(record: &Recording, list: &[(String, Vec<f64>)]) -> Option<Panel> {
     let curve = |(name, values): &(String, Vec<f64>)| {
         let start = values.first().copied().unwrap_or(0.0);
@@ -158,13 +160,13 @@ fn drift(record: &Recording, list: &[(String, Vec<f64>)]) -> Option<Panel> {
     (!curves.is_empty()).then(|| over_time(record, title(ColumnKind::Conserved), Scale::Decades, curves))
 }
 
-/// The errors at the rows.
+/// The estimated errors at the rows.
 fn known_errors(record: &Recording) -> &[(String, Vec<f64>)] {
     let errors = record.rows.columns.iter().find(|columns| columns.kind == ColumnKind::Errors);
     errors.map_or(&[], |columns| &columns.list)
 }
 
-/// log₁₀ of errors at the rows; an error of 0 is not drawn.
+/// The panel of log₁₀ of the errors at the rows; an error of 0 is not drawn.
 fn errors(record: &Recording, list: &[(String, Vec<f64>)]) -> Option<Panel> {
     let times = &record.rows.times;
     let curve = |(name, values): &(String, Vec<f64>)| {
@@ -175,7 +177,7 @@ fn errors(record: &Recording, list: &[(String, Vec<f64>)]) -> Option<Panel> {
     (!curves.is_empty()).then(|| over_time(record, title(ColumnKind::Errors), Scale::Decades, curves))
 }
 
-/// The curve of one column over another.
+/// The panel with the curve of one column against another.
 pub(crate) fn portrait(
     samples: &Samples,
     (x, y): (&str, &str),
@@ -199,7 +201,7 @@ pub(crate) fn portrait(
     })
 }
 
-/// Whether two names are those of components of one vector: they differ in one letter of x, y, z or in one
+/// Whether two names denote components of one vector: they differ only in one letter among x, y, z or in one
 /// digit.
 pub(crate) fn are_alike(a: &str, b: &str) -> bool {
     let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
@@ -211,7 +213,7 @@ pub(crate) fn are_alike(a: &str, b: &str) -> bool {
         && ["xyz", "XYZ", "0123456789", "₀₁₂₃₄₅₆₇₈₉"].iter().any(|set| among(set))
 }
 
-/// Whether values differ by more than rounding.
+/// Whether values differ by more than rounding errors.
 pub(crate) fn moves(values: &[f64]) -> bool {
     range(values.iter().copied()).is_some_and(|(low, high)| !is_still(low, high) && high - low > 1e-12)
 }
@@ -222,8 +224,8 @@ fn are_comparable(a: &[f64], b: &[f64]) -> bool {
     a.max(b) <= MOST_UNEQUAL * a.min(b)
 }
 
-/// Points whose first or second numbers are angles, from −π to π: the curve is broken where it leaves that
-/// range.
+/// Points whose first or second numbers are angles, which are reduced to the range from −π to π: the curve is
+/// broken where it leaves that range.
 fn broken(points: Vec<(f64, f64)>, wrap: [bool; 2]) -> Vec<(f64, f64)> {
     if wrap == [false; 2] {
         return points;

@@ -1,6 +1,6 @@
-//! Panels: the contents of common axes.
+//! Panels: contents that share axes.
 
-/// Curves, bars or cells on common axes.
+/// Curves, bars or cells that share axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// The title.
@@ -9,7 +9,7 @@ pub struct Panel {
     pub across: (String, Scale),
     /// The name of the vertical axis, if there is one for all curves, and its scale.
     pub up: (String, Scale),
-    /// The horizontal range, if it is not that of the contents.
+    /// The horizontal range, if it differs from that of the contents.
     pub span: Option<(f64, f64)>,
     /// Whether both axes have the same scale.
     pub equal: bool,
@@ -22,11 +22,11 @@ pub struct Panel {
 /// The scale of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// Values themselves.
+    /// The values are shown as they are.
     Linear,
-    /// Values are decimal logarithms.
+    /// The values are decimal logarithms.
     Decades,
-    /// Values are angles from −π to π.
+    /// The values are angles from −π to π.
     Angles,
 }
 
@@ -35,13 +35,13 @@ pub enum Scale {
 pub enum Content {
     /// Curves, each with its name.
     Curves(Vec<Curve>),
-    /// From, to and height of each bar.
+    /// Bars, each given by its left end, its right end and its height.
     Bars(Vec<[f64; 3]>),
     /// A colour for each value; the values are listed column by column.
     Cells {
-        /// Middles of the columns.
+        /// The middles of the columns.
         columns: Vec<f64>,
-        /// Middles of the rows.
+        /// The middles of the rows.
         rows: Vec<f64>,
         /// The values.
         values: Vec<f64>,
@@ -58,7 +58,7 @@ pub struct Curve {
 }
 
 impl Panel {
-    /// Curves over a common quantity.
+    /// A panel of curves over a common quantity.
     pub fn over(across: &str, title: impl Into<String>, scale: Scale, curves: Vec<Curve>) -> Panel {
         Panel {
             title: title.into(),
@@ -79,7 +79,7 @@ impl Panel {
         }
     }
 
-    /// Whether its two axes are alike: neither is time.
+    /// Whether its two axes are alike, neither of them being time.
     pub(crate) fn is_portrait(&self) -> bool {
         !self.up.0.is_empty()
     }

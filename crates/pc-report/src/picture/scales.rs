@@ -3,14 +3,14 @@
 use crate::picture::axes::{is_still, range};
 use crate::picture::panel::{Curve, Panel, Scale};
 
-/// A range this many times that of a curve makes the curve look flat.
+/// On an axis whose range is more than this many times that of a curve, the curve looks flat.
 const RATIO: f64 = 12.0;
-/// The most curves on common axes.
+/// The largest number of curves that share axes.
 const MOST_CURVES: usize = 6;
-/// Sizes below this fraction of the largest are rounding.
+/// Ranges up to this fraction of the largest value are attributed to rounding errors.
 const ROUNDING: f64 = 1e-13;
 
-/// Curves over a common quantity, in as few panels as show each of them.
+/// Curves over a common quantity, in as few panels as are needed to show each of them well.
 pub fn by_scale((across, scale): (&str, Scale), title: &str, curves: &[Curve]) -> Vec<Panel> {
     let values: Vec<Vec<f64>> =
         curves.iter().map(|curve| curve.points.iter().map(|&(_, value)| value).collect()).collect();
@@ -22,8 +22,8 @@ pub fn by_scale((across, scale): (&str, Scale), title: &str, curves: &[Curve]) -
     groups(&values).into_iter().map(panel).collect()
 }
 
-/// Groups of lists of values, by index, the widest range first, such that each visibly changes and no group
-/// has more curves than can be distinguished.
+/// Groups of lists of values, given by their indices, the widest range first, such that each list visibly
+/// changes and no group has more curves than can be distinguished.
 pub(super) fn groups(lists: &[Vec<f64>]) -> Vec<Vec<usize>> {
     let ranges: Vec<Option<(f64, f64)>> = lists.iter().map(|list| range(list.iter().copied())).collect();
     let size = |&(low, high): &(f64, f64)| low.abs().max(high.abs());

@@ -1,4 +1,4 @@
-//! A picture: panels under each other.
+//! A picture: panels arranged one below the other.
 
 use pc_print::one_line;
 
@@ -11,22 +11,22 @@ use crate::recording::{Recording, UnknownColumn};
 const WIDTH: f64 = 960.0;
 const TITLE: f64 = 46.0;
 const REMARK: f64 = 22.0;
-/// The heights of a panel over time: its heading, the area within the axes, the numbers below.
+/// The heights of the parts of a panel over time: its heading, the area within the axes, the numbers below.
 const HEADING: f64 = 30.0;
 const WITHIN: f64 = 180.0;
 const BELOW: f64 = 36.0;
-/// The height of the area within the axes of a panel without time.
+/// The height of the area within the axes of a panel that is not over time.
 const SQUARE: f64 = 340.0;
 const EDGE: f64 = 14.0;
-/// Sizes of texts.
+/// The sizes of texts.
 const LARGE: f64 = 17.0;
 const HEADLINE: f64 = 13.0;
 const SMALL: f64 = 11.0;
 /// If there are more curves than this, their names are left out.
 const MOST_NAMES: usize = 9;
-/// The most points of a curve.
+/// The largest number of points of a curve.
 const MOST_POINTS: usize = 12_000;
-/// The most panels of a picture, unless its contents were chosen.
+/// The largest number of panels of a picture, unless its contents were chosen.
 const MOST_PANELS: usize = 12;
 
 /// Panels under a title.
@@ -118,7 +118,7 @@ impl Picture {
         drawing
     }
 
-    /// The width of the names of curves.
+    /// The width that the names of curves need.
     fn legend(&self) -> f64 {
         let over_time = self.panels.iter().filter(|panel| !panel.is_portrait());
         let longest = over_time
@@ -129,7 +129,7 @@ impl Picture {
     }
 }
 
-/// The names of curves with their colours, under each other.
+/// Draws the names of curves with their colours, one below the other.
 fn names(drawing: &mut Drawing, panel: &Panel, [x, y]: [f64; 2], width: f64) {
     const STEP: f64 = 18.0;
     let Content::Curves(curves) = &panel.content else { return };

@@ -1,11 +1,12 @@
 //! The visible points of a curve.
 
-/// The greatest distance of the curve from the lines between its points, in points of the drawing.
+/// The greatest distance of the curve from the lines between the points that are kept, in points of the
+/// drawing.
 const TOLERANCE: f64 = 0.05;
 /// The width within which only the ends and extremes of a curve are visible.
 const COLUMN: f64 = 1.0;
 
-/// Fewer points with the same appearance: at most `most`, or up to twice as many for a curve with many turns.
+/// Fewer points with the same appearance: at most `most`, or up to twice as many if the curve has many turns.
 pub(super) fn simplified(points: &[[f64; 2]], most: usize) -> Vec<[f64; 2]> {
     let onwards = points.windows(2).all(|pair| pair[0][0] <= pair[1][0])
         || points.windows(2).all(|pair| pair[0][0] >= pair[1][0]);
@@ -21,7 +22,7 @@ pub(super) fn simplified(points: &[[f64; 2]], most: usize) -> Vec<[f64; 2]> {
     }
 }
 
-/// For points in the same column, the first, the lowest, the highest and the last.
+/// The first, the lowest, the highest and the last of the points in each column.
 fn extremes(points: &[[f64; 2]], width: f64) -> Vec<[f64; 2]> {
     let mut kept = Vec::new();
     for column in points.chunk_by(|a, b| (a[0] / width).floor() == (b[0] / width).floor()) {
@@ -46,7 +47,7 @@ fn extremes(points: &[[f64; 2]], width: f64) -> Vec<[f64; 2]> {
 }
 
 /// The points at which the line turns: each line from one kept point to the next passes all points between
-/// them within a tolerance [Williams 1978].
+/// them to within a tolerance [Williams 1978].
 fn straightened(points: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
     let Some((&first, rest)) = points.split_first() else { return Vec::new() };
     let mut kept = vec![first];
@@ -91,7 +92,7 @@ fn straightened(points: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
     kept
 }
 
-/// An angle from −π to π.
+/// The angle reduced to the range from −π to π.
 fn turned(angle: f64) -> f64 {
     let full = 2.0 * std::f64::consts::PI;
     angle - full * (angle / full).round()
@@ -101,7 +102,7 @@ fn turned(angle: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The largest distance of a point from the line through the kept ones, which are in order.
+    /// The largest distance of a point from the line through the kept points, which are in order.
     fn worst(points: &[[f64; 2]], kept: &[[f64; 2]]) -> f64 {
         let to_piece = |p: [f64; 2], a: [f64; 2], b: [f64; 2]| {
             let (dx, dy) = (b[0] - a[0], b[1] - a[1]);

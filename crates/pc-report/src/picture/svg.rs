@@ -1,15 +1,15 @@
-//! Drawings as SVG: on a page, in its colours, or in a separate file.
+//! Drawings as SVG, either on a page, in the colours of the page, or in a separate file.
 
 use std::fmt::Write as _;
 
 use crate::page::html::text;
 use crate::picture::drawing::{Anchor, Drawing, Ink, Shape};
 
-/// A list of fonts for viewers.
+/// The list of fonts from which a viewer chooses.
 const FONT: &str = "DejaVu Sans, Verdana, sans-serif";
 
 impl Drawing {
-    /// A separate file, on white.
+    /// The text of a separate file, with a white background.
     pub fn svg(&self) -> String {
         let Drawing { width, height, .. } = self;
         let mut svg = format!(
@@ -61,7 +61,8 @@ impl Drawing {
         svg + "</svg>\n"
     }
 
-    /// An element of a page, in its colours, with a title and a description that have these ids.
+    /// The drawing as an element of a page, in the colours of the page, with a title and a description whose
+    /// ids begin with `id`.
     pub(crate) fn inline(&self, id: &str, title: &str, description: &str) -> String {
         let Drawing { width, height, .. } = self;
         let mut svg = format!(
@@ -138,7 +139,7 @@ fn path(points: &[[f64; 2]], digits: usize) -> String {
     path
 }
 
-/// Adds an element to a picture.
+/// Adds an element to the text of a picture.
 pub(super) fn put(svg: &mut String, element: std::fmt::Arguments<'_>) {
     let _ = svg.write_fmt(element); // writing to a string cannot fail
 }

@@ -1,26 +1,26 @@
-//! The viewpoint of a scene: for a plane motion it is perpendicular to its plane, for any other above one
-//! side.
+//! The viewpoint of a scene: for a plane motion the view is perpendicular to its plane, for any other motion
+//! it is from above and from one side.
 
 use crate::scene::{Scene, SceneShape};
 
-/// The turn about the vertical, and the tilt, of a view in space.
+/// The angles by which a view in space is turned about the vertical, and tilted.
 const YAW: f64 = -0.6;
 const PITCH: f64 = 0.35;
-/// The fraction of the space that is filled.
+/// The fraction of the paper that the scene fills.
 const FILLED: f64 = 0.85;
-/// Distance of the eye, in sizes of the scene.
+/// The distance of the eye from the scene, in units of the size of the scene.
 const DISTANCE: f64 = 4.0;
-/// The length that counts as zero relative to the size of the scene.
+/// The length, relative to the size of the scene, that counts as zero.
 const NOTHING: f64 = 1e-6;
 
-/// A point on the drawing.
+/// A point of space as it is seen on the drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Seen {
-    /// Its place, with y pointing down.
+    /// Its position, with y pointing down.
     pub(super) at: [f64; 2],
-    /// Its distance behind the middle.
+    /// Its distance behind the centre of the scene.
     pub(super) depth: f64,
-    /// The length of a unit there.
+    /// The length that a unit has on the drawing at that depth.
     pub(super) scale: f64,
 }
 
@@ -29,7 +29,7 @@ pub(super) struct Seen {
 pub(super) struct Camera {
     middle: [f64; 3],
     extent: [f64; 3],
-    /// The largest extent.
+    /// The largest extent of the scene.
     pub(super) size: f64,
     /// The axes of space that point right, away and up, and the signs of the last two.
     axes: [usize; 3],
@@ -38,8 +38,8 @@ pub(super) struct Camera {
     paper: [f64; 2],
 }
 
-/// The box of all motion, without and with the extent of the shapes themselves, and the orientation of discs
-/// relative to the axes.
+/// The box that contains all motion, with and without the extent of the shapes themselves, and the
+/// orientation of discs relative to the axes.
 struct Bounds {
     low: [f64; 3],
     high: [f64; 3],
@@ -84,7 +84,7 @@ impl Bounds {
     }
 }
 
-/// The extent of a shape about its first point.
+/// The extent of a shape around its first point.
 fn reach(shape: &SceneShape, numbers: &[f32]) -> f64 {
     let reach = match shape {
         SceneShape::Disc => f64::from(numbers[6]).abs(),
@@ -95,7 +95,7 @@ fn reach(shape: &SceneShape, numbers: &[f32]) -> f64 {
     if reach.is_finite() { reach } else { 0.0 }
 }
 
-/// Three numbers from `i` on.
+/// The vector of the three numbers from index `i` on.
 pub(super) fn vector(numbers: &[f32], i: usize) -> [f64; 3] {
     [numbers[i], numbers[i + 1], numbers[i + 2]].map(f64::from)
 }
@@ -105,8 +105,8 @@ pub(super) fn length(a: [f64; 3]) -> f64 {
 }
 
 impl Camera {
-    /// Up is opposite to gravity; without gravity it is the third axis, or the second for a motion in a plane
-    /// perpendicular to the third.
+    /// The direction up is opposite to gravity; without gravity it is the third axis, or the second for a
+    /// motion in a plane perpendicular to the third.
     pub(super) fn of(scene: &Scene, paper: [f64; 2]) -> Camera {
         let Bounds { low, high, least, most, across } = Bounds::of(scene);
         let is_known = [0, 1, 2].map(|k| low[k].is_finite());
@@ -139,7 +139,7 @@ impl Camera {
         Camera { middle, extent, size, axes: [right, away, up], signs: [handed, sign], is_plane, paper }
     }
 
-    /// The point on paper of a point in space.
+    /// The point on paper that shows a point in space.
     pub(super) fn project(&self, p: [f64; 3]) -> Seen {
         let [right, away, up] = self.axes;
         let from_middle = |k: usize| p[k] - self.middle[k];

@@ -6,23 +6,23 @@ use crate::picture::{Anchor, Drawing, Ink};
 use crate::scene::SceneShape;
 use crate::still::camera::{Camera, Seen, length, vector};
 
-/// Radius of a point.
+/// The radius of a point.
 const DOT: f64 = 5.5;
-/// Height of letters.
+/// The height of letters.
 const LETTERS: f64 = 12.0;
-/// Corners of a circle.
+/// The number of corners with which a circle is drawn.
 const CORNERS: usize = 48;
-/// The number of windings of a spring, and their width.
+/// The number of segments with which a spring is drawn, and the width of its windings to either side.
 const WINDINGS: usize = 22;
 const WINDING: f64 = 8.0;
-/// Length of axes, in sizes of the scene.
+/// The length of axes, in units of the size of the scene.
 const AXIS: f64 = 0.12;
 
-/// The corners of the faces of a box: the bits of each number choose the ends of its edges.
+/// The corners of the faces of a box: the bits of each number select the ends of its edges.
 const FACES: [[usize; 4]; 6] =
     [[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]];
 
-/// Draws a shape with its numbers, in its own colour; `trace` has its previous points.
+/// Draws a shape, given its numbers, in its own colour; `trace` has its previous points.
 pub(super) fn draw(
     drawing: &mut Drawing,
     camera: &Camera,
@@ -79,7 +79,7 @@ pub(super) fn draw(
     }
 }
 
-/// An area on white with a given opacity, with its edge.
+/// Draws an area, with its edge, in a given opacity on white.
 fn outlined(drawing: &mut Drawing, mut corners: Vec<[f64; 2]>, ink: Ink, part: f64) {
     let pale = ink.colour().map(|c| (255.0 - part * (255.0 - f64::from(c))).round() as u8);
     drawing.filled(corners.clone(), Ink::Mixed(pale));
@@ -115,7 +115,7 @@ fn unit(a: [f64; 3]) -> [f64; 3] {
     a.map(|x| if length > 0.0 { x / length } else { 0.0 })
 }
 
-/// `at` + R v, R row after row.
+/// The point `at` + R v, with R given row by row.
 fn turned(at: [f64; 3], rotation: &[f32], v: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|k| {
         let row = vector(rotation, 3 * k);
@@ -123,7 +123,7 @@ fn turned(at: [f64; 3], rotation: &[f32], v: [f64; 3]) -> [f64; 3] {
     })
 }
 
-/// A zigzag line between two points.
+/// The points of a zigzag line between two points in space.
 fn windings(camera: &Camera, from: [f64; 3], to: [f64; 3]) -> Vec<[f64; 2]> {
     let [start, end] = [camera.project(from).at, camera.project(to).at];
     let way = [end[0] - start[0], end[1] - start[1]];

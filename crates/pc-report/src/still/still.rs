@@ -5,14 +5,14 @@ use crate::scene::{Scene, SceneShape};
 use crate::still::camera::{Camera, vector};
 use crate::still::shapes;
 
-/// Height of the letters of title and clock.
+/// The height of the letters of the title and the clock.
 const LETTERS: f64 = 14.0;
 /// Their position.
 const EDGE: f64 = 12.0;
 
 impl Scene {
-    /// Still number `number` on paper of this width and height, with the title and the time; the last one if there are
-    /// fewer. It shows what the player of [`animation`](crate::animation) shows before the view is turned.
+    /// Still number `number` on paper of this width and height, with the title and the time; the last still if there
+    /// are fewer. It looks as in the player of [`animation`](crate::animation) before the view is turned.
     pub fn drawing(&self, title: &str, number: usize, [width, height]: [f64; 2]) -> Drawing {
         let mut drawing = Drawing { width, height, shapes: Vec::new() };
         let Some(last) = self.times.len().checked_sub(1) else { return drawing };
@@ -47,7 +47,7 @@ impl Scene {
 }
 
 impl SceneShape {
-    /// Whether it has its own colour.
+    /// Whether a shape has its own colour.
     fn has_colour(&self) -> bool {
         match self {
             SceneShape::Point(_)

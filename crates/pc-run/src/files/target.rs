@@ -23,23 +23,13 @@ pub struct Target {
     pub(crate) device: Option<File>,
 }
 
-<<<<<<< HEAD:crates/pc-run/src/files/target.rs
 impl Target {
-    /// A regular file, existing or not, in a directory in which files can be made; leftovers of
-    /// killed runs are removed.
-    ///
-    /// # Errors
-    /// [`io::Error`] that says why it cannot be written.
-    pub fn regular(path: &Path) -> io::Result<Target> {
-=======
-impl Place {
     /// The place of a regular file, existing or not, in a directory in which files can be created; leftovers
     /// of killed runs are removed.
     ///
     /// # Errors
     /// [`io::Error`] that says why the file cannot be written.
-    pub fn regular(path: &Path) -> io::Result<Place> {
->>>>>>> eng5:crates/pc-run/src/files/place.rs
+    pub fn regular(path: &Path) -> io::Result<Target> {
         match fs::metadata(path) {
             Ok(found) if !found.is_file() && !found.is_dir() => Err(refused("it is not a regular file")),
             _ => Target::new(path),

@@ -28,13 +28,8 @@ pub(crate) struct Linearizable<'g> {
 
 impl<'g> Linearizable<'g> {
     /// # Errors
-<<<<<<< HEAD:crates/pc-run/src/linear/linearizable.rs
-    /// [`RunError`] at the place in the file that causes it.
-    pub(crate) fn new(model: &Model, graph: &'g Graph) -> Result<Linearizable<'g>, RunError> {
-=======
     /// [`RunError`] at the place in the file that causes the error.
-    pub(crate) fn new(model: &Model, graph: &'g Graph) -> Result<Ground<'g>, RunError> {
->>>>>>> eng5:crates/pc-run/src/linear/ground.rs
+    pub(crate) fn new(model: &Model, graph: &'g Graph) -> Result<Linearizable<'g>, RunError> {
         let assembly = model.assemble(graph)?;
         if assembly.constraints.nonlinear().is_some() {
             return Err(LinearError::Nonlinear.into());

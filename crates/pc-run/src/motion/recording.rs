@@ -10,13 +10,8 @@ use crate::motion::table::Table;
 use pc_print::short;
 
 impl Run {
-<<<<<<< HEAD:crates/pc-run/src/motion/recording.rs
-    /// The run for pages and pictures.
-    pub fn record(&self) -> Recording {
-=======
     /// The run in the form that pages and pictures take.
-    pub fn record(&self) -> Record {
->>>>>>> eng5:crates/pc-run/src/motion/record.rs
+    pub fn record(&self) -> Recording {
         let at = || short(self.statistics.current_time, 6);
         let remark = match &self.ending {
             Ending::Completed => None,

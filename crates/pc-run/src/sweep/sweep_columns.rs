@@ -34,18 +34,11 @@ pub struct SweepColumns {
     results: usize,
 }
 
-<<<<<<< HEAD:crates/pc-run/src/sweep/sweep_columns.rs
 impl SweepColumns {
-    /// Number of the member, what is varied, how it ended, then `results`, steps of a motion, and message.
-    pub(crate) fn new(of: SweepOf, names: &[String], results: &[Column]) -> SweepColumns {
-        let varied: Vec<Column> = names.iter().map(|name| Column::new(name, CellKind::Number)).collect();
-=======
-impl Sheet {
     /// The columns of a sweep: the number of the member, the varied quantities, how the member ended, then
     /// `results`, the steps of a motion, and a message.
-    pub(crate) fn new(of: SweepOf, names: &[String], results: &[Column]) -> Sheet {
-        let varied: Vec<Column> = names.iter().map(|name| Column::new(name, Kind::Number)).collect();
->>>>>>> eng5:crates/pc-run/src/sweep/sheet.rs
+    pub(crate) fn new(of: SweepOf, names: &[String], results: &[Column]) -> SweepColumns {
+        let varied: Vec<Column> = names.iter().map(|name| Column::new(name, CellKind::Number)).collect();
         // What is varied and shown is the same, as a parameter that is an integral would be: names are of one space.
         let taken: Vec<&str> = varied.iter().chain(results).map(|column| column.name.as_str()).collect();
         let free = |name: &str, kind| {
@@ -74,13 +67,8 @@ impl Sheet {
         json!([self.of.word(), self.varied, self.results, columns]).to_string()
     }
 
-<<<<<<< HEAD:crates/pc-run/src/sweep/sweep_columns.rs
-    /// The sheet from its text.
-    pub(crate) fn from_text(text: &str) -> Option<SweepColumns> {
-=======
     /// Reads a sheet from its text.
-    pub(crate) fn from_text(text: &str) -> Option<Sheet> {
->>>>>>> eng5:crates/pc-run/src/sweep/sheet.rs
+    pub(crate) fn from_text(text: &str) -> Option<SweepColumns> {
         type Parts = (String, usize, usize, Vec<(String, u8)>);
         let (of, varied, results, columns): Parts = serde_json::from_str(text).ok()?;
         let of = SweepOf::of_word(&of)?;

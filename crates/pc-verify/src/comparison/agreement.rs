@@ -8,27 +8,28 @@ use crate::error::{Disagreement, Irregular, VerifyError};
 /// The agreement of two derivations, and how close it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Agreement {
-    /// States at which all forms were compared.
+    /// The number of states at which the forms were compared.
     pub states: usize,
     /// The number of these at which equations were compared only along random virtual velocities, because
     /// the model is large.
     pub projected: usize,
-    /// States that were skipped because the equations are singular or not defined there.
+    /// The number of states that were skipped because the equations are singular or not defined there.
     pub skipped: usize,
-    /// The reason for the last of these.
+    /// The reason why the last of these was skipped.
     pub reason: Option<String>,
     /// The largest difference, relative to the size of the terms; at most [`TOLERANCE`](crate::TOLERANCE).
     pub error: f64,
-    /// The quantity with that difference.
+    /// The quantity with this difference.
     pub quantity: String,
-    /// The forms compared: `poincare`, `canonical`, `emit`.
+    /// The forms that were compared: `poincare`, `canonical`, `emit`.
     pub forms: Vec<String>,
     /// The quantities that were not compared, each with the reason.
     pub not_compared: Vec<String>,
 }
 
 impl fmt::Display for Agreement {
-    /// `agrees to 3e-15 at 97 states, 3 not comparable: the equations for the accelerations are singular`
+    /// Writes, for example, `agrees to 3e-15 at 97 states, 3 not comparable: the equations for the
+    /// accelerations are singular`
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let plural = if self.states == 1 { "" } else { "s" };
         if self.error == 0.0 {
@@ -51,7 +52,7 @@ impl fmt::Display for Agreement {
 }
 
 impl Agreement {
-    /// A difference, relative to the size of its terms.
+    /// Takes note of a difference, relative to the size of its terms.
     pub(crate) fn note(&mut self, error: f64, label: &str) {
         if error > self.error || self.quantity.is_empty() {
             (self.error, self.quantity) = (error, label.to_owned());
@@ -78,13 +79,13 @@ impl Agreement {
     }
 }
 
-/// The reason why a state gives no comparison.
+/// The reason why the comparison at a state gives no agreement.
 pub(crate) enum Passed {
     /// The state is not regular.
     Irregular(Irregular),
     /// The derivations differ.
     Error(VerifyError),
-    /// The derivations differ, within the rounding of the first at that state.
+    /// The derivations differ, but no more than rounding errors of the first at this state explain.
     Noise(Box<Disagreement>),
 }
 

@@ -18,19 +18,19 @@ use crate::error::{Disagreement, Irregular, VerifyError};
 use crate::numbers::rounding::{Rounding, UNIT, within};
 use crate::numbers::sized::Sized;
 
-/// Velocities with a larger difference, relative to the largest, are distinct; momenta with a smaller one are
-/// equal.
+/// Velocities whose difference, relative to the largest, exceeds this are distinct; momenta whose difference
+/// does not are equal.
 const OTHER: f64 = 1e-9;
 
-/// The greatest factor by which rounding in the first derivation may exceed that in the second: forms that
-/// are not chosen for accuracy lose up to half of the digits. If values scatter further, they are not
+/// The greatest factor by which rounding errors of the first derivation may exceed those of the second: forms
+/// that are not chosen for accuracy lose up to half of the digits. Values that scatter further are not
 /// compared.
 const WORSE: f64 = 1e4;
 
 /// The extent of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Number of states at which the derivations are compared.
+    /// The number of states at which the derivations are compared.
     pub states: usize,
     /// The seed of the random states.
     pub seed: u64,
@@ -43,13 +43,13 @@ impl Default for Options {
     }
 }
 
-/// Derives an assembled model a second time and compares, at random states on the constraints: ẋ, η̇ or ẏ, λ, the energy
-/// and its rate, integrals and outputs, of the equations that are integrated, in quasi-velocities and in
-/// momenta, and of those that are emitted as source.
+/// Derives an assembled model a second time and compares, at random states that satisfy the constraints, ẋ, η̇ or ẏ, λ,
+/// the energy and its rate, integrals and outputs. This is done for the equations that are integrated, in
+/// quasi-velocities and in momenta, and for those that are emitted as source.
 ///
 /// # Errors
 /// [`VerifyError::Disagreement`] with the quantity, its two values and the state; [`VerifyError::Model`] if the first
-/// derivation refuses the model; [`VerifyError::Unable`] if the second cannot be made;
+/// derivation refuses the model; [`VerifyError::Unable`] if the second cannot be carried out;
 /// [`VerifyError::NothingCompared`] if no state is regular.
 pub fn verify(model: &Model, assembly: &Assembly<'_>, options: &Options) -> Result<Agreement, VerifyError> {
     assembly.stage("the second derivation", || {
@@ -66,7 +66,8 @@ pub fn verify(model: &Model, assembly: &Assembly<'_>, options: &Options) -> Resu
     })
 }
 
-/// Compares equations that are integrated, in which reactions are observed, and those that are printed, in which they are not.
+/// Compares the equations that are integrated, which have reactions among their outputs, and those that are printed, which do
+/// not.
 fn compared(
     (observed, assembly): (&Model, &Assembly<'_>),
     plain: &Assembly<'_>,
@@ -109,7 +110,7 @@ fn compared(
     agreement.finished(&firsts, number)
 }
 
-/// All forms but the one in quasi-velocities that is integrated.
+/// All forms except the one in quasi-velocities that is integrated.
 fn others<'g>(
     observed: &Model,
     assembly: &Assembly<'_>,
@@ -162,7 +163,7 @@ fn has_form(variables: Variables, assembly: &Assembly<'_>) -> bool {
     }
 }
 
-/// A large model, in quasi-velocities.
+/// The equations of a large model in quasi-velocities, to be compared along virtual velocities.
 pub(crate) struct Projection {
     flow: Flow,
     layout: Layout,
@@ -175,7 +176,7 @@ impl Projection {
     }
 }
 
-/// The equations of the first derivation that are compared.
+/// The equations of the first derivation that are to be compared.
 pub(crate) enum Compared<'g> {
     /// All equations, in these forms.
     Wholly(Vec<First<'g>>),
@@ -183,7 +184,7 @@ pub(crate) enum Compared<'g> {
     Along(Box<Projection>),
 }
 
-/// The number of states tried for each comparison.
+/// The number of states tried for each comparison that is wanted.
 const TRIES: usize = 3;
 
 impl Agreement {
@@ -215,7 +216,8 @@ impl Agreement {
 }
 
 impl Second {
-    /// Compares the integrated equations, here called `form`, with the second derivation at one of their states.
+    /// Compares the integrated equations, referred to as `form`, with the second derivation at one of their
+    /// states.
     ///
     /// # Errors
     /// As for [`verify`].
@@ -273,7 +275,7 @@ impl Second {
         agreement.finished(&[], 1)
     }
 
-    /// Compares at the start and at random states near it, trying up to three times as many as needed,
+    /// Compares at the start and at random states near it, trying up to three times as many as required,
     /// since some may not be regular.
     pub(crate) fn compare_near_start(
         &self,
@@ -311,7 +313,7 @@ impl Second {
         }
     }
 
-    /// Compares the equations with the second derivation at a place along random virtual velocities.
+    /// Compares the equations with the second derivation at one state, along random virtual velocities.
     fn compare_projected(
         &self,
         form: &str,
@@ -340,7 +342,7 @@ impl Second {
         Ok(())
     }
 
-    /// Compares all forms with the second derivation at a place: at least one of them.
+    /// Compares all forms with the second derivation at one state; at least one of them has to be comparable.
     fn compare(&self, firsts: &mut [First<'_>], at: &Place, agreement: &mut Agreement) -> Result<(), Passed> {
         let here = Here::new(&self.derivation, self.derivation.at(at, &Rounding::none())?)?;
         let mut scattered = None;
@@ -434,10 +436,10 @@ impl Second {
         all.map(|(rounding, derived)| Ok((rounding, Here::new(&self.derivation, derived)?))).collect()
     }
 
-    /// Raises sizes to the scatter of the values of the first derivation, in units of rounding, at states
-    /// that differ by rounding: its eliminations also amplify rounding where independent velocities determine
-    /// the others badly. The increase is bounded, since a value that is noise scatters by its own size and
-    /// would agree with any value. Returns the sizes without bounds.
+    /// Raises sizes to the scatter of the values of the first derivation, in units of the rounding error, at
+    /// states that differ by rounding errors: its eliminations amplify these too where independent velocities
+    /// determine the others badly. The increase is bounded, since a value that is mere noise scatters by its
+    /// own size and would agree with any value. Returns the unbounded sizes.
     fn scatter_first(
         &self,
         first: &mut First<'_>,
@@ -461,8 +463,8 @@ impl Second {
         noise
     }
 
-    /// Whether a form in momenta finds velocities different from those of a place, with the same momenta
-    /// and under the same constraints: if L is not convex in η, momenta do not determine η.
+    /// Whether a form in momenta finds velocities that differ from those of a state, but have the same
+    /// momenta and satisfy the same constraints: if L is not convex in η, momenta do not determine η.
     fn has_other_velocities(
         &self,
         first: &First<'_>,
@@ -494,7 +496,7 @@ impl Second {
     }
 }
 
-/// The difference of two values relative to the size of their terms; `None` if it is subnormal.
+/// The difference of two values relative to the size of their terms; zero if the difference is subnormal.
 pub(crate) fn error(one: f64, two: Sized) -> f64 {
     let difference = (one - two.value).abs();
     if difference <= f64::MIN_POSITIVE { 0.0 } else { difference / two.size }

@@ -1,4 +1,4 @@
-//! The equations of the first derivation, in each of their forms, as numbers.
+//! The numerical values of the equations of the first derivation, in each of their forms.
 
 use std::sync::Arc;
 
@@ -14,32 +14,32 @@ use crate::derivation::quantity::{Free, Quantity};
 use crate::error::{Disagreement, Irregular};
 use crate::numbers::rounding::Rounding;
 
-/// Equations of the first derivation.
+/// The equations of the first derivation in one form.
 pub(crate) struct First<'g> {
     pub(crate) form: String,
     /// The compared quantities with their names.
     pub(crate) wanted: Vec<(String, Quantity)>,
-    /// Their indices among the values of the first derivation.
+    /// The indices of these quantities among the values of the first derivation.
     places: Vec<usize>,
     /// The free quasi-velocities, if their momenta or energies are compared.
     pub(crate) free: Option<Vec<Free>>,
     source: Values<'g>,
-    /// The number of states at which it was compared, and the reason for the last state that was not
-    /// compared.
+    /// The number of states at which the form was compared, and the reason why it was not compared at the
+    /// last state without a comparison.
     pub(crate) compared: usize,
     pub(crate) reason: Option<String>,
-    /// The difference at the last state at which its values were noise.
+    /// The disagreement at the last state at which its values were mere noise.
     pub(crate) noise: Option<Box<Disagreement>>,
 }
 
-/// The source of its values.
+/// The source of the values of a form.
 enum Values<'g> {
     /// The printed expressions.
     Printed(Box<Printed<'g>>),
     /// The integrated equations, with the meaning of each quasi-velocity of the system.
     Flow { flow: Box<Flow>, coordinates: Vec<usize>, quasi_velocities: Vec<Option<Free>> },
-    /// The emitted source, run by the interpreter, with the columns of its state and the rate of the energy
-    /// at t and state.
+    /// The emitted source, run by the interpreter, with the meaning of the quasi-velocities in its state and
+    /// the rate of the energy at t and state.
     Emitted {
         motion: Box<Motion>,
         free: Vec<Free>,
@@ -67,7 +67,7 @@ impl EnergyRate<'_> {
 }
 
 impl<'g> First<'g> {
-    /// The integrated equations.
+    /// The integrated equations, prepared for the comparison.
     pub(crate) fn flow(
         form: &str,
         flow: Flow,
@@ -132,7 +132,7 @@ impl<'g> First<'g> {
         First::comparing(form, candidates, &inputs, free, source, agreement)
     }
 
-    /// The emitted source.
+    /// The emitted source, prepared for the comparison.
     pub(crate) fn emitted(
         assembly: &Assembly<'_>,
         second: &Second,
@@ -180,7 +180,7 @@ impl<'g> First<'g> {
         Ok(First::comparing("emit", candidates, &[], Some(free), source, agreement))
     }
 
-    /// The printed equations of a form.
+    /// The printed equations of a form, prepared for the comparison.
     pub(crate) fn printed(
         form: pc_print::Form,
         assembly: &Assembly<'_>,
@@ -204,7 +204,8 @@ impl<'g> First<'g> {
         }
     }
 
-    /// Compares those candidates that the second derivation also has, except the values given to the first.
+    /// The equations with those candidates to be compared that the second derivation also has, except the
+    /// values that are given to the first.
     fn comparing(
         form: &str,
         candidates: Vec<(String, Option<Quantity>)>,
@@ -231,7 +232,7 @@ impl<'g> First<'g> {
         self.wanted.iter().map(|(_, quantity)| quantity.clone()).collect()
     }
 
-    /// The compared values at a place.
+    /// The values to be compared, at one state.
     pub(crate) fn values(
         &mut self,
         second: &Derivation,

@@ -1,23 +1,23 @@
-//! The sizes of quantities without cancellation.
+//! The sizes that quantities would have without cancellation.
 
 use crate::derivation::equations::Derived;
 use crate::derivation::place::Direction;
 use crate::derivation::quantity::Quantity;
 
-/// The fraction of 1e-12 of the size of the terms that corresponds to some units in the last place of
+/// The factor that reduces a tolerance of 1e-12 of the size of the terms to some units in the last place of
 /// the largest term.
 pub(crate) const SHARED: f64 = 1e-3;
 
-/// The direction of the motion: time, ẋ and ẇ.
+/// The direction in which the motion goes: time, ẋ, ẇ and ż.
 pub(crate) fn motion(derived: &Derived) -> Direction {
     let w = derived.accelerations.clone();
     Direction { w, z: derived.state_rates.clone(), ..derived.place.in_time(&derived.velocities) }
 }
 
-/// The size of a quantity at the given velocities and momenta without cancellation: a quantity that vanishes
-/// by cancellation, such as a force that reactions balance to the last digit, is accurate only to roundings
-/// of this size. If η = a ẋ + a_0, the first derivation has ẋ as b η minus the `drift` b a_0, and momenta
-/// likewise, however much of them cancels.
+/// The size that a quantity would have at the given velocities and momenta without cancellation: a quantity
+/// that vanishes by cancellation, such as a force that reactions balance to the last digit, is accurate only
+/// to within rounding errors of this size. If η = a ẋ + a_0, the first derivation computes ẋ as b η minus the
+/// `drift` b a_0, and momenta likewise, however much of them cancels.
 pub(crate) fn natural_size(derived: &Derived, drift: &[f64], quantity: &Quantity) -> f64 {
     let largest =
         |lists: &[&[f64]]| lists.iter().copied().flatten().fold(0.0f64, |size, x| size.max(x.abs()));

@@ -1,4 +1,4 @@
-//! Results other than motions, compared before they are returned.
+//! The comparison of results other than motions, made before they are returned.
 
 use pc_mech::Folding;
 use pc_model::{Assembly, Flow, Model, Variables};
@@ -22,14 +22,14 @@ pub enum Outlet {
     Page(Form),
 }
 
-/// The number of random states at which such equations are compared, besides the start.
+/// The number of random states, in addition to the start, at which such equations are compared.
 const NEAR: usize = 3;
 
-/// Compares equations in the form in which they are returned with the second derivation: at the start, and at
+/// Compares equations, in the form in which they are returned, with the second derivation at the start and at
 /// three random states near it.
 ///
-/// Those of a large model are compared along random virtual velocities, as [`Second::agrees`] does, in the form that is
-/// integrated; its other forms are left out, and the agreement says so.
+/// The equations of a large model are compared along random virtual velocities, as by [`Second::agrees`], in the form
+/// that is integrated; its other forms are left out, and the agreement says so.
 ///
 /// # Errors
 /// As for [`verify`](crate::verify).

@@ -1,4 +1,4 @@
-//! The printed equations in numbers: exactly the expressions that `pc derive` prints.
+//! The numerical values of the printed equations, exactly of the expressions that `pc derive` prints.
 
 use nalgebra::DMatrix;
 use pc_expr::ExprError;
@@ -39,33 +39,34 @@ pub(crate) struct Printed<'g> {
     form: Form,
     page: &'g Graph,
     sheet: Sheet<'g>,
-    /// Names of the free quasi-velocities.
+    /// The names of the free quasi-velocities.
     quasi_velocities: Vec<String>,
-    /// The left sides of equations and the expressions they equal, without reactions.
+    /// The left-hand sides of equations and the expressions that they equal, without reactions.
     direct: Vec<(Side, Expr<'g>)>,
     /// The symbols with their meanings.
     inputs: Vec<(Expr<'g>, Input)>,
-    /// The change of quasi-velocities, if they are not those of the model.
+    /// The change of quasi-velocities, if the equations do not use those of the model.
     change: Option<Change<'g>>,
 }
 
-/// Quasi-velocities other than those of the model, on the page.
+/// Quasi-velocities on the page that are not those of the model.
 struct Change<'g> {
-    /// Their symbols and those of their rates.
+    /// Their symbols, and the symbols of their rates.
     symbols: Vec<Expr<'g>>,
     accelerations: Vec<Expr<'g>>,
     /// Their definitions in terms of the independent quasi-velocities of the model.
     definitions: Vec<Expr<'g>>,
-    /// The rates of these in terms of them.
+    /// The rates of the independent quasi-velocities of the model, in terms of the new quasi-velocities and
+    /// their rates.
     rates: Vec<Expr<'g>>,
 }
 
 /// A left side.
 #[derive(Clone, Debug)]
 enum Side {
-    /// The rate of a coordinate or first-order state, by its name.
+    /// The rate of a coordinate or first-order state with this name.
     Rate(String),
-    /// A quasi-velocity, by its name.
+    /// A quasi-velocity with this name.
     QuasiVelocity(String),
     /// Momentum number s, as a function of the quasi-velocities.
     Momentum(usize),
@@ -86,7 +87,7 @@ impl Second {
             .or_else(reaction)
     }
 
-    /// Whether their number is that of the velocities, or that of the velocities that the constraints leave
+    /// Whether these quasi-velocities are as many as all velocities, or as those that the constraints leave
     /// free.
     fn are_free(&self, free: &[Free]) -> bool {
         let k = self.start.w.len();
@@ -94,7 +95,7 @@ impl Second {
     }
 }
 
-/// The meaning of a symbol.
+/// The meaning of a symbol on the page.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Input {
     Time,
@@ -104,7 +105,7 @@ pub(crate) enum Input {
     Velocity(Free),
     Momentum(usize),
     Reaction(usize),
-    /// A force computed outside.
+    /// A force that is computed outside the model.
     External,
 }
 
@@ -220,7 +221,8 @@ impl<'g> Printed<'g> {
         }
     }
 
-    /// M by rows, empty if rates of momenta are printed, and the right sides, both unchanged and expanded.
+    /// M row by row, empty if rates of momenta are printed, and the right-hand sides, both unchanged and
+    /// expanded.
     fn balance(&self) -> (Vec<Expr<'g>>, [&[Expr<'g>]; 2]) {
         match &self.sheet.balance {
             Balance::Velocities { mass, right, written, .. } => {
@@ -244,8 +246,8 @@ impl<'g> Printed<'g> {
         self.form.variables().is_some_and(Variables::has_momenta)
     }
 
-    /// The right sides of the printed equations, with M η̇ = r solved, with the momenta of the second
-    /// derivation if these are the variables, and its multipliers if the equations contain them.
+    /// The values of the printed equations: M η̇ = r is solved, and the momenta and multipliers are those of
+    /// the second derivation, if the variables are momenta and if the equations contain multipliers.
     pub(crate) fn values(
         &self,
         second: &Derivation,
@@ -332,14 +334,14 @@ impl<'g> Change<'g> {
         }
     }
 
-    /// Whether a symbol is one of the quasi-velocities that do not belong to the model, or the rate of one.
+    /// Whether a symbol is a quasi-velocity that does not belong to the model, or the rate of one.
     fn has(&self, symbol: Expr<'g>) -> bool {
         let place = self.symbols.iter().position(|&eta| eta == symbol);
         place.is_some_and(|place| self.definitions[place] != symbol) || self.accelerations.contains(&symbol)
     }
 }
 
-/// Whether there are ignorable coordinates.
+/// Whether the model has ignorable coordinates.
 pub(crate) fn is_reduced(assembly: &Assembly<'_>) -> bool {
     let left = assembly.free_form(Variables::Reduced);
     let all = assembly.system.frame().coordinates().len();

@@ -1,12 +1,12 @@
-//! The equations of large models, along a few virtual velocities drawn at random.
+//! The equations of large models, compared along a few virtual velocities that are drawn at random.
 //!
-//! All equations at a state need all second derivatives of L by the velocities, n² of them. Along one virtual
-//! velocity v that the constraints allow they become one equation without multipliers,
+//! To evaluate all equations at a state takes all n² second derivatives of L with respect to the velocities.
+//! Along one virtual velocity v that the constraints allow, they reduce to one equation without multipliers,
 //!
 //!   v_s (D_t p_s − p·δw_s − X_s L − Q_s) = 0,
 //!
-//! which takes some five evaluations of L along the motion of the first derivation. An error in any equation
-//! shows in it, except for special v; the rates of the constraints along the motion, to which v is
+//! which takes about five evaluations of L along the motion of the first derivation. An error in any equation
+//! shows up in it, except for special v; the rates of the constraints along the motion, to which v is
 //! insensitive, are checked in addition.
 
 use nalgebra::DMatrix;
@@ -39,9 +39,9 @@ struct Moving {
 /// A value that should vanish, with the largest of its terms.
 type Residual = Sized;
 
-/// The indices of quantities in the state and observables of the first derivation.
+/// The positions of quantities in the state and the observables of the first derivation.
 pub(crate) struct Layout {
-    /// The indices of the columns among the rates.
+    /// The indices, among the rates, of the columns for quasi-velocities.
     columns: Vec<Option<usize>>,
     energy: Option<usize>,
 }
@@ -92,7 +92,7 @@ impl Derivation {
         }
     }
 
-    /// The motion of the first derivation at a place: ẇ is solved for if η̇ and constraints determine it.
+    /// The motion of the first derivation at a state; ẇ is solved for if η̇ and the constraints determine it.
     fn moving(
         &self,
         flow: &mut Flow,
@@ -121,7 +121,7 @@ impl Derivation {
         Ok(Moving { place: at.clone(), velocities, accelerations, state_rates, energy })
     }
 
-    /// ẇ from η̇ and from constraints that stay satisfied.
+    /// ẇ, computed from η̇ and from the condition that the constraints stay satisfied.
     fn accelerations(
         &self,
         at: &Place,
@@ -144,12 +144,12 @@ impl Derivation {
         Ok((inverse * DMatrix::from_column_slice(right.len(), 1, &right)).iter().copied().collect())
     }
 
-    /// Whether η are functions of w other than w itself.
+    /// Whether η is defined as a function of w, rather than being w itself.
     pub(crate) fn has_definitions(&self) -> bool {
         matches!(&self.text.velocities, Velocities::Ordinary(definitions) if !definitions.is_empty())
     }
 
-    /// Random virtual velocities that the constraints allow at a place.
+    /// Random virtual velocities that the constraints allow at a state.
     fn allowed(&self, at: &Place) -> Result<Vec<Vec<f64>>, Irregular> {
         let k = at.w.len();
         let rows = self.constraint_matrix(&self.kept, at, &Rounding::none())?;
@@ -219,7 +219,7 @@ impl Derivation {
         Ok(all)
     }
 
-    /// The equation along a virtual velocity.
+    /// The residual of the equation along a virtual velocity.
     fn along(
         &self,
         here: &Moving,
@@ -249,7 +249,7 @@ impl Derivation {
         })
     }
 
-    /// δw, with b δw = D_t (b v) − (∂u/∂x) b v, or by the brackets; `None` if w = ẋ, where it vanishes.
+    /// δw from b δw = D_t (b v) − (∂u/∂x) b v, or from the brackets; `None` if w = ẋ, for which it vanishes.
     fn variation(
         &self,
         here: &Moving,

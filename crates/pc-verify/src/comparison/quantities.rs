@@ -13,7 +13,7 @@ use crate::numbers::rounding::{Rounding, UNIT, within};
 use crate::numbers::sized::Sized;
 use crate::text::resultant::Resultants;
 
-/// Momenta of independent quasi-velocities, where constraints determine the others.
+/// Momenta of independent quasi-velocities, with the others determined by constraints.
 struct Momenta {
     values: Vec<Sized>,
     rates: Vec<Sized>,
@@ -25,10 +25,10 @@ struct Momenta {
 /// The number of evaluations with deliberate rounding errors.
 pub(crate) const REPETITIONS: u64 = 3;
 
-/// The condition beyond which equations are too inaccurate.
+/// The condition number beyond which equations are too inaccurate.
 const WORST_CONDITION: f64 = 1e10;
 
-/// The condition beyond which a choice of independent velocities fails.
+/// The condition number beyond which a choice of independent velocities fails.
 const WORST_CHOICE: f64 = 1e4;
 
 impl Derivation {
@@ -43,7 +43,7 @@ impl Derivation {
         (1..=REPETITIONS).map(again).collect()
     }
 
-    /// Quantities of the equations at a place, each with the largest of its terms, propagated through the
+    /// Quantities of the equations at a state, each with the largest of its terms, propagated through the
     /// linear equations.
     pub(crate) fn quantities(
         &self,
@@ -108,8 +108,8 @@ impl Derivation {
         Ok(quantities)
     }
 
-    /// Quantities whose sizes are at least their scatter, in units of rounding, when the computation is
-    /// repeated with rounding errors.
+    /// Raises the sizes of quantities to at least their scatter, in units of the rounding error, when the
+    /// computation is repeated with rounding errors.
     pub(crate) fn scatter(
         &self,
         quantities: &mut [Sized],
@@ -126,7 +126,7 @@ impl Derivation {
         Ok(())
     }
 
-    /// The largest |∂η_s/∂w_r| times the terms of w_r, and times those of ẇ_r.
+    /// For each η_s, the largest |∂η_s/∂w_r| times the terms of w_r, and the largest times those of ẇ_r.
     fn column_sizes(&self, derived: &Derived) -> Result<Vec<(f64, f64)>, Irregular> {
         let rows = self.quasi_velocity_matrix(&derived.place, &Rounding::none())?;
         let led = |row: &[f64], sizes: &[f64]| {
@@ -137,7 +137,7 @@ impl Derivation {
         Ok(rows.iter().map(both).collect())
     }
 
-    /// The largest |b_is| times the terms of ẇ_s, for each ẋ_i.
+    /// For each ẋ_i, the largest |b_is| times the terms of ẇ_s.
     fn acceleration_sizes(&self, derived: &Derived) -> Result<Vec<f64>, Irregular> {
         let frame = self.frame(&derived.place, &Rounding::none())?;
         let led = |i: usize| {
@@ -171,7 +171,7 @@ impl Derivation {
         needed.then(|| self.resultants(derived, rounding)).transpose()
     }
 
-    /// The given integrals and outputs, at their indices.
+    /// The integrals and outputs among the wanted quantities, at their indices.
     fn observed(
         &self,
         derived: &Derived,
@@ -225,8 +225,8 @@ impl Derivation {
         Ok([rows, rates])
     }
 
-    /// y_f = p·W_f, where the virtual velocities W_f have the free quasi-velocity f equal to 1, the other
-    /// free ones 0, and satisfy the constraints unless all are free.
+    /// y_f = p·W_f, where the virtual velocity W_f has the free quasi-velocity f equal to 1 and the other
+    /// free ones equal to 0, and satisfies the constraints unless all quasi-velocities are free.
     fn momenta(&self, derived: &Derived, free: &[Free], rounding: &Rounding) -> Result<Momenta, Irregular> {
         let at = &derived.place;
         let k = at.w.len();
@@ -293,8 +293,8 @@ impl Derivation {
     }
 }
 
-/// Quantities from one elimination have an uncertainty of some roundings of the largest of them, or of
-/// their natural size.
+/// Raises sizes: quantities from one elimination are uncertain by some rounding errors of the largest of
+/// them, or of their natural size.
 fn raise(quantities: &mut [Sized], wanted: &[Quantity], natural_size: impl Fn(&Quantity) -> f64) {
     for (quantity, wanted) in quantities.iter_mut().zip(wanted) {
         quantity.size = quantity.size.max(SHARED * natural_size(wanted));

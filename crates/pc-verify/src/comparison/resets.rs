@@ -9,11 +9,11 @@ use crate::derivation::place::Place;
 use crate::error::{Disagreement, Irregular, VerifyError};
 use crate::numbers::rounding::{Rounding, within};
 
-/// The tolerance of a reset: it takes some operations, and its state is projected so that quaternions have
-/// length 1.
+/// The tolerance of a reset, which takes some operations and whose state is projected so that quaternions
+/// have length 1.
 const APART: f64 = 1e-12;
-/// Velocities are projected onto constraints up to this fraction of their terms: positions that are off by
-/// rounding rotate the constraints.
+/// Velocities are projected onto constraints to within this fraction of their terms: rounding errors of
+/// positions rotate the constraints.
 const OFF: f64 = 1e-9;
 
 /// The effect of an event on a state.
@@ -23,16 +23,16 @@ pub struct Jump<'a> {
     pub event: &'a str,
     /// When.
     pub t: f64,
-    /// y⁻, a state of a flow.
+    /// The state y⁻ of the flow before the event.
     pub before: &'a [f64],
     /// y⁺
     pub after: &'a [f64],
 }
 
 impl Second {
-    /// Compares the state after an event with the definitions of its reset, evaluated at the state before: names have their new values,
-    /// coordinates and first-order states that are not reset the old ones. Under constraints new values may yield to them; then the
-    /// constraints are compared instead.
+    /// Compares the state after an event with the definitions of its reset, evaluated at the state before: names that are reset have
+    /// their new values, and coordinates and first-order states that are not reset have their old ones. Under constraints, new
+    /// values may be adjusted to satisfy them; then the constraints are compared instead.
     ///
     /// # Errors
     /// As for [`verify`](crate::verify).
@@ -86,7 +86,7 @@ impl Second {
         }))
     }
 
-    /// Labels with the value of the first derivation, the value from the text, and their size.
+    /// Labels, each with the value of the first derivation, the value from the text, and the size of both.
     fn pairs(
         &self,
         model: &Model,
@@ -132,7 +132,7 @@ impl Second {
         Ok(pairs)
     }
 
-    /// The value of a coordinate, velocity, quasi-velocity or first-order state at a place.
+    /// The value that a coordinate, velocity, quasi-velocity or first-order state has at a place.
     fn named_value(&self, at: &Place, name: &str) -> Result<Option<f64>, Irregular> {
         let exact = Rounding::none();
         let point = self.derivation.still(at, &exact);

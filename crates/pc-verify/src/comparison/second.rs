@@ -1,4 +1,4 @@
-//! The second derivation of a model, under the names of the first.
+//! The second derivation of a model, with the names used by the first.
 
 use pc_mech::Expr;
 use pc_model::{Assembly, Flow, Model};
@@ -23,34 +23,36 @@ pub(crate) const LONG: usize = 100_000;
 /// The number of terms to evaluate for all states together, in about a second.
 const ALL_STATES: usize = 5_000_000;
 
-/// The additional number of terms for all equations at a single state: some seconds.
+/// The number of terms up to which all equations are evaluated at a single state: this takes some seconds.
 const ONE_STATE: usize = 5 * ALL_STATES;
 
-/// The operations of a matrix product that take as long as one term.
+/// The number of operations of a matrix product that take as long as one term.
 const PRODUCTS: usize = 50;
 
 /// The number of states at which a model is always compared along virtual velocities.
 const FEWEST: usize = 3;
 
-/// The most velocities for which the canonical equations are derived to be compared: the inverse of a full
-/// mass matrix then takes a second, and ten times as long with every two more.
+/// The largest number of velocities for which the canonical equations are derived only to be compared: the
+/// inverse of a full mass matrix then takes a second, and ten times as long for every two velocities more.
 const MOST_INVERTED: usize = 9;
 
-/// The most velocities for which an orthonormal frame is made to be compared: its roots are nested.
+/// The largest number of velocities for which an orthonormal frame is derived only to be compared: its roots
+/// are nested.
 const MOST_ORTHONORMAL: usize = 3;
 
 /// The second derivation of a model.
 #[derive(Clone, Debug)]
 pub struct Second {
     pub(crate) derivation: Derivation,
-    /// The names of the columns of a table.
+    /// The names of the columns in which a table shows the velocities: quasi-velocities, or ẋ where none is
+    /// declared.
     pub(crate) columns: Vec<String>,
     pub(crate) start: Place,
-    /// Whether the energy of the first derivation is that of independent velocities, y·η − L, and not that of
-    /// all.
+    /// Whether the energy of the first derivation is y·η − L of the independent velocities, and not of all
+    /// velocities.
     pub(crate) has_free_energy: bool,
     external: Vec<String>,
-    /// The places of the quaternions of joints among the coordinates.
+    /// The indices, among the coordinates, of the quaternions of joints.
     quaternions: Vec<[usize; 4]>,
 }
 
@@ -58,7 +60,7 @@ pub struct Second {
 const RANK_POINTS: usize = 6;
 
 impl Second {
-    /// The second derivation of a model, at the start of the first.
+    /// The second derivation of a model, which starts where the first does.
     ///
     /// # Errors
     /// [`VerifyError::Unable`].
@@ -140,8 +142,8 @@ impl Second {
         })
     }
 
-    /// The place with these coordinates, columns and first-order states. Quaternions are divided by their lengths: both
-    /// derivations hold for rotations, and differ in how they continue elsewhere.
+    /// The state with these coordinates, columns and first-order states. Quaternions are divided by their lengths: both
+    /// derivations hold for rotations, and differ in how they extend to other quaternions.
     pub(crate) fn place(&self, t: f64, row: &[f64]) -> Result<Place, Irregular> {
         let (x, eta) = row.split_at(self.start.x.len());
         let (eta, z) = eta.split_at(eta.len() - self.start.z.len());
@@ -164,7 +166,7 @@ impl Second {
         &self.start
     }
 
-    /// An agreement without compared states.
+    /// An agreement in which no states have been compared yet.
     pub(crate) fn nothing_yet(&self) -> Agreement {
         let mut agreement = Agreement {
             states: 0,
@@ -182,7 +184,7 @@ impl Second {
         agreement
     }
 
-    /// The quasi-velocity of this name: a column, the left side of a constraint, or a velocity.
+    /// The quasi-velocity of this name: a column, the left-hand side of a constraint, or a velocity.
     pub(crate) fn free(&self, name: &str) -> Option<Free> {
         let column = self.columns.iter().position(|column| column == name).map(Free::Column);
         column.or_else(|| {
@@ -233,7 +235,8 @@ impl Second {
         observed.or_else(reaction).or_else(resultant)
     }
 
-    /// The approximate number of terms of the text that are evaluated for the equations at one state.
+    /// The approximate number of terms of the text that have to be evaluated to compare the equations at one
+    /// state.
     pub fn cost(&self) -> usize {
         let k = self.start.w.len();
         let evaluations = self.derivation.couplings.pairs() + 4 * k + 4;
@@ -242,7 +245,7 @@ impl Second {
             .saturating_add(k.saturating_pow(3) / PRODUCTS)
     }
 
-    /// The cost along a few virtual velocities.
+    /// The cost of a comparison along a few virtual velocities.
     fn projected_cost(&self) -> usize {
         let k = self.start.w.len();
         // The frame, the definitions of quasi-velocities and the constraints are linearised several times.
@@ -253,14 +256,14 @@ impl Second {
         evaluations.saturating_mul(self.derivation.text.terms())
     }
 
-    /// Whether one comparison takes more than some milliseconds: the equations are long and, being in momenta or in
-    /// other variables, cannot be compared along virtual velocities instead.
+    /// Whether one comparison takes more than some milliseconds, because the equations are long and are in momenta
+    /// or other variables, so that they cannot be compared along virtual velocities instead.
     pub fn is_long(&self, flow: &Flow) -> bool {
         let is_own = flow.has_own_variables() && flow.motion.coordinates() == self.start.x.len();
         self.cost() > LONG && (flow.has_momenta() || !is_own)
     }
 
-    /// The reason why a printed form is not derived only to be compared.
+    /// The reason why a printed form is too expensive to derive just for a comparison; none if it is not.
     pub(crate) fn too_large_for(&self, form: Form, assembly: &Assembly<'_>) -> Option<&'static str> {
         if form == Form::Voronets && assembly.constraints.multipliers().is_none() {
             return None; // equal to Lagrange's, and not derived
@@ -279,8 +282,8 @@ impl Second {
         (form != Form::Poincare && self.cost() > LONG).then_some("the model is large")
     }
 
-    /// The row of coordinates, columns and first-order states in the state of a flow; coordinates that it
-    /// leaves out have their start values.
+    /// The coordinates, columns and first-order states that belong to the state of a flow; coordinates that
+    /// the flow leaves out have their start values.
     pub(crate) fn row(&self, flow: &mut Flow, t: f64, state: &[f64]) -> Vec<f64> {
         let shown = flow.row_beside(t, state);
         let names = &self.derivation.text.names;
@@ -311,8 +314,8 @@ impl Second {
     }
 }
 
-/// A quasi-velocity that is not declared: `x'`, or the name of a constraint, extended if something else has
-/// it.
+/// The undeclared quasi-velocity of this name: `x'`, or the name of a constraint, extended by `_` if
+/// something else has that name.
 fn completing(text: &Text, name: &str) -> Option<Completing> {
     let place = |names: &[String], name: &str| names.iter().position(|known| known == name);
     let velocity = name.strip_suffix('\'').and_then(|x| place(&text.names.coordinates, x));
@@ -332,7 +335,7 @@ impl Derivation {
         }
     }
 
-    /// The rank of b: the largest at some points near a place.
+    /// The rank of b: the largest that it has at some points near a state.
     fn rank(&self, near: &Place) -> usize {
         let exact = Rounding::none();
         let mut random = Random::new(0);

@@ -1,4 +1,4 @@
-//! Derivatives of the equations, compared with differences of the rates of the second derivation.
+//! The comparison of derivatives of the equations with differences of the rates of the second derivation.
 
 use pc_mech::VectorField;
 use pc_model::{Assembly, Flow, Model};
@@ -27,17 +27,19 @@ pub struct Slope {
     pub observed: Vec<(String, f64)>,
 }
 
-/// Steps, as fractions of the state: which is best depends on how curved the rates are.
+/// The steps that are tried, as fractions of the state: which one is best depends on the curvature of the
+/// rates.
 const STEPS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 
-/// A derivative is compared if differences determine it to this fraction.
+/// A derivative is compared only if the differences determine it to within this relative error.
 const KNOWN: f64 = 1e-3;
-/// Different derivatives differ by at least this fraction: errors are of the order of a term.
+/// Derivatives count as different if they differ by more than this fraction: an error of derivation is of the
+/// order of a term.
 const APART: f64 = 1e-5;
-/// Differences of rates carry the rounding of many terms.
+/// The rounding error of a difference of rates, relative to their terms: it accumulates over many terms.
 const ROUNDINGS: f64 = 1e3 * f64::EPSILON;
-/// Unless there is a corner, the differences on either side come nearer each other by at least this factor when the step is
-/// halved; the factor is 2 for smooth rates.
+/// Unless there is a corner, the gap between the differences on either side shrinks by at least this factor when the step
+/// is halved; the factor is 2 for smooth rates.
 const SMOOTH: f64 = 1.5;
 /// The factor by which the uncertainty of a difference may exceed its estimate.
 const DOUBT: f64 = 10.0;
@@ -45,8 +47,8 @@ const DOUBT: f64 = 10.0;
 impl Second {
     /// Compares derivatives along a direction with differences of the second derivation's rates at a state of a flow of the model.
     ///
-    /// Derivatives that differences do not determine, at corners and where rounding is large, are not
-    /// compared, and neither is a large model.
+    /// Derivatives that differences do not determine, at corners and where rounding errors are large, are not
+    /// compared; neither are those of a large model.
     ///
     /// # Errors
     /// As for [`verify`](crate::verify).
@@ -117,7 +119,7 @@ fn nothing(reason: &str) -> VerifyError {
     VerifyError::NothingCompared { tried: 1, reason: reason.to_owned() }
 }
 
-/// A state that is moved along a direction.
+/// A state of a flow that can be moved along a direction.
 struct Moved<'a> {
     second: &'a Second,
     model: &'a Model,
@@ -129,7 +131,8 @@ struct Moved<'a> {
 }
 
 impl Moved<'_> {
-    /// The derivative of each quantity by central differences, with its uncertainty; none if they do not determine it.
+    /// The derivative of each quantity by central differences, with its uncertainty; none if differences do not
+    /// determine it.
     fn differences(&self) -> Result<Vec<Option<Sized>>, Irregular> {
         let here = self.at(0.0)?;
         let mut best: Vec<Option<Sized>> = vec![None; here.len()];
@@ -149,7 +152,8 @@ impl Moved<'_> {
         Ok(best)
     }
 
-    /// The distance along a direction over which the state and the parameters change by their own size.
+    /// The distance along the direction over which some component of the state or some parameter changes by
+    /// its own size.
     fn unit(&self) -> f64 {
         let parameter =
             |name: &str| self.model.parameters().find(|(known, _)| *known == name).map(|(_, value)| value);
@@ -198,16 +202,16 @@ impl Moved<'_> {
     }
 }
 
-/// Differences of a quantity at a step.
+/// The differences of a quantity over a step to either side.
 #[derive(Clone, Copy, Debug)]
 struct Sides {
     central: f64,
-    /// The difference between the two sides.
+    /// The difference between the slopes on the two sides.
     apart: f64,
     rounding: f64,
 }
 
-/// The derivative from differences at a step and at half of it.
+/// The derivative from the differences over a step and over half of it, if they determine it.
 fn told(far: &Sides, near: &Sides) -> Option<Sized> {
     let value = (4.0 * near.central - far.central) / 3.0;
     let doubt = (near.central - far.central).abs() + near.rounding;

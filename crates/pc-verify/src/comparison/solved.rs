@@ -1,4 +1,4 @@
-//! The solved unknowns, and the effect of their errors on functions of them.
+//! The unknowns that are solved for, and the effect of their errors on functions of them.
 
 use crate::comparison::natural::{SHARED, motion, natural_size};
 use crate::comparison::tolerance::TOLERANCE;
@@ -13,7 +13,7 @@ use crate::numbers::rounding::Rounding;
 use crate::numbers::sized::Sized;
 use crate::text::resultant::Resultants;
 
-/// w, ẇ, λ and the reactions on bodies.
+/// The unknowns: w, ẇ, λ and the reactions on bodies.
 #[derive(Clone)]
 pub(crate) struct Solved {
     velocities: Vec<f64>,
@@ -34,7 +34,7 @@ impl Solved {
 }
 
 impl Derivation {
-    /// The place of a motion with these values.
+    /// The point on a motion at which the unknowns have these values.
     pub(crate) fn on_motion<'a>(
         &'a self,
         solved: &Solved,
@@ -48,9 +48,9 @@ impl Derivation {
         point.with_resultants(solved.resultants.clone())
     }
 
-    /// The sizes of the terms of integrals and outputs from the unknowns in them: if each of w, ẇ and λ
-    /// agrees to the tolerance of its own terms, an output may differ accordingly; if λ vanishes, λ² may
-    /// differ by the square.
+    /// The sizes of the terms of integrals and outputs that result from the unknowns in them: if each of w, ẇ
+    /// and λ agrees to within the tolerance of its own terms, an output may differ accordingly; if λ
+    /// vanishes, λ² may differ by the square of that tolerance.
     pub(crate) fn led_to_observed(
         &self,
         derived: &Derived,
@@ -83,7 +83,7 @@ impl Derivation {
         Ok(sizes)
     }
 
-    /// Raises the sizes of integrals and outputs on account of the reactions in them, if these are less
+    /// Raises the sizes of integrals and outputs to account for the reactions in them, if these are less
     /// certain.
     pub(crate) fn lead_reactions(
         &self,
@@ -131,14 +131,14 @@ impl Derivation {
         Ok(all)
     }
 
-    /// The sizes of the reactions without cancellation, in a unit that two eliminations share: at the given
-    /// velocities and momenta, and, if the quasi-velocities of the text and the constraints determine each
-    /// other, also by
+    /// The sizes that the reactions would have without cancellation, in a unit that two eliminations share.
+    /// They follow from the given velocities and momenta and, if the quasi-velocities of the text together
+    /// with the constraints determine all velocities, also from
     ///
     ///   λ_α = (ṗ − F)·W_α,
     ///
     /// with the virtual velocities W_α at which φ_α alone is 1 and all quasi-velocities are 0. The first
-    /// derivation finds λ with these, and if they are large, more cancels than in M ẇ − Cᵀλ = F.
+    /// derivation finds λ using these W_α, and if they are large, more cancels than in M ẇ − Cᵀλ = F.
     pub(crate) fn least_reaction_sizes(&self, derived: &Derived) -> Result<Vec<f64>, Irregular> {
         let exact = Rounding::none();
         let (at, k, l) = (&derived.place, derived.place.w.len(), self.kept.len());
@@ -182,7 +182,7 @@ mod tests {
         Model::new(Document::parse(Source::new("model.toml", text)).unwrap())
     }
 
-    /// x is fixed without forces: λ = 0, with terms as large as the velocity of y.
+    /// x is fixed and no forces act: λ = 0, with terms as large as the velocity of y.
     const HELD: &str = r#"
 [parameters]
 g = 0.0
@@ -219,7 +219,7 @@ root = "sqrt(1 + λ_k) - 1"
         assert!(near(led[2], size / 2.0, 1e-3), "{led:?}");
     }
 
-    /// A reaction with an error of one part in 1e9 of its terms makes outputs disagree, even its
+    /// If a reaction has an error of one part in 1e9 of its terms, outputs that contain it disagree, even its
     /// square.
     #[test]
     fn an_output_of_a_wrong_reaction_is_found() {
@@ -239,7 +239,8 @@ root = "sqrt(1 + λ_k) - 1"
         }
     }
 
-    /// λ vanishes in one derivation; in the other it is some units in the last place of cancelling terms.
+    /// λ vanishes in one derivation; in the other it amounts to some units in the last place of cancelling
+    /// terms.
     #[test]
     fn squares_of_reactions_that_vanish_agree() {
         let frames = r#"
@@ -284,7 +285,7 @@ out = "λ_k0^2"
         }
     }
 
-    /// ẋ = (2 + x²) (w − e^{x/2} q'): no force acts along q, and λ is the remainder of cancelling terms
+    /// ẋ = (2 + x²) (w − e^{x/2} q'): no force acts along q, and λ is what remains of the cancelling terms
     /// (∂ẋ/∂q')˙ p.
     const LEVER: &str = r#"
 [parameters]
@@ -312,7 +313,8 @@ t_end = -0.5
         assert_eq!(agreement.states, 100);
     }
 
-    /// A part in 1e8 of a mass is a part in 1e10 of the reaction to which it contributes.
+    /// An error of one part in 1e8 of a mass is an error of one part in 1e10 of the reaction to which the
+    /// mass contributes.
     #[test]
     fn a_reaction_of_another_mass_is_found() {
         let (mut heavier, graph) = (model(LEVER), Graph::new());

@@ -1,4 +1,5 @@
-//! Differences that jump between nearby states: they come from rounding or from a jump of the rates, not from a derivation.
+//! Differences that jump between nearby states: they come from rounding errors or from a jump of the rates, not from an
+//! error of derivation.
 
 use crate::comparison::compare::error;
 use crate::comparison::first::First;
@@ -10,27 +11,28 @@ use crate::numbers::rounding::{Random, Rounding, within};
 use crate::numbers::sized::Sized;
 
 /// The distance of other states from this one: large enough that small terms absorbed by a large number are
-/// rounded differently, which single roundings do not achieve, and small enough that the difference due to
-/// a wrong term keeps as many digits.
+/// rounded differently, which single rounding errors do not achieve, and so small that a difference due to a
+/// wrong term stays the same to as many digits.
 const ASIDE: f64 = 1e-9;
 
 /// The number of such states.
 const STATES: u64 = 4;
 
-/// A difference of at most this many jumps is rounding.
+/// A difference of at most this many jumps is attributed to rounding errors.
 const JUMPS: f64 = 4.0;
 
-/// Two derivations near a state at which they differ.
+/// The result of comparing two derivations near a state at which they differ.
 pub(crate) struct Aside {
-    /// The sizes of terms whose rounding would explain the jumps of the differences.
+    /// The sizes of terms whose rounding errors would explain the jumps of the differences.
     pub(crate) noise: Vec<f64>,
-    /// The largest errors; none if the derivations differ at one of the states.
+    /// The largest relative differences at the nearby states; none if the derivations disagree at one of
+    /// these or too few could be compared.
     pub(crate) errors: Option<Vec<f64>>,
 }
 
 impl Derivation {
-    /// Compares two derivations near a state at which they differ. If rates jump, the last bit of the state decides the
-    /// side, and the derivations may be on different sides; nearby they agree.
+    /// Compares two derivations near a state at which they differ. If rates jump, the last bit of the state decides on
+    /// which side of the jump it is, and the derivations may be on different sides; at nearby states they agree.
     pub(crate) fn aside(
         &self,
         first: &mut First<'_>,
@@ -104,9 +106,9 @@ mod tests {
         assert!(TOLERANCE * unsteady[rate] < 1e-3 * difference, "{difference:e} of {:e}", unsteady[rate]);
     }
 
-    /// As x goes to 0 the constraint determines w less and less: the printed expression for the other
-    /// velocity has terms in 1/x⁴ that cancel and absorb the remainder. Some states give no information on
-    /// it, others do.
+    /// As x tends to 0, the constraint determines w less and less accurately: the printed expression for the
+    /// other velocity has terms in 1/x⁴ that cancel and absorb the remainder. Some states give no information
+    /// about it, others do.
     #[test]
     fn absorbed_terms_are_ignored() {
         let agreement = verified(

@@ -1,4 +1,4 @@
-//! The structure coefficients, for frames that do not determine them at each point.
+//! The structure coefficients of frames that do not determine them at each point.
 
 use nalgebra::DMatrix;
 
@@ -12,7 +12,7 @@ use crate::numbers::rounding::{Random, Rounding, within};
 use crate::text::term::Term;
 
 impl Structure {
-    /// The c_rs^m, unless they follow from the frame.
+    /// The c_rs^m; none if they follow from the frame.
     pub(crate) fn constants(
         &self,
         derivation: &Derivation,
@@ -43,11 +43,12 @@ fn tabulated(
     Ok(constants)
 }
 
-/// The remainder that rounding may leave of brackets, relative to their terms.
+/// The remainder that rounding errors may leave of vanishing combinations of brackets, relative to their
+/// terms.
 const CLOSED: f64 = 1e-8;
 
-/// The constants for which the brackets close at many points at the time of a place: by least squares,
-/// refused unless unique and without residual.
+/// The constants for which the brackets close at many points at the time of a place, determined by least
+/// squares; an error unless they are unique and leave no residual.
 fn fitted(derivation: &Derivation, at: &Place) -> Result<Constants, Irregular> {
     let (n, k) = (at.x.len(), at.w.len());
     let exact = Rounding::none();
@@ -91,7 +92,7 @@ fn fitted(derivation: &Derivation, at: &Place) -> Result<Constants, Irregular> {
     Ok(constants)
 }
 
-/// b_s, and [X_r, X_s] for r < s in the order of the pairs, with 0 for time; and the size of their largest terms.
+/// b_s; [X_r, X_s] for r < s in the order of the pairs, with 0 for time; and the size of their largest terms.
 #[allow(clippy::type_complexity)] // two lists of vectors
 fn commutators(
     derivation: &Derivation,

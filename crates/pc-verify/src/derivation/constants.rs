@@ -1,6 +1,6 @@
 //! Structure coefficients that are constant, and those of named algebras.
 
-/// c_rs^m with r, s = 0..k and m = 1..k, stored at m − 1.
+/// c_rs^m with r, s = 0..k and m = 1..k, stored at the index m − 1.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Constants {
     pub(crate) k: usize,
@@ -23,7 +23,7 @@ impl Constants {
         self.values[(s * (k + 1) + r) * k + m] = -value;
     }
 
-    /// [X_r, X_s] = value X_m for each, numbers from 1.
+    /// The constants with [X_r, X_s] = value X_m for each entry, in which r, s and m are counted from 1.
     fn of(k: usize, brackets: &[(usize, usize, usize, f64)]) -> Constants {
         let mut constants = Constants::zero(k);
         brackets.iter().for_each(|&(r, s, m, value)| constants.set(r, s, m - 1, value));
@@ -93,12 +93,12 @@ impl Constants {
     }
 }
 
-/// [X_1, X_2] = −a X_2 + n X_3, [X_1, X_3] = −X_2 − a X_3, without the −X_2 of the latter where n = 0.
+/// [X_1, X_2] = −a X_2 + n X_3, [X_1, X_3] = −X_2 − a X_3, where the latter lacks −X_2 if n = 0.
 fn bianchi(a: f64, n: f64) -> Constants {
     Constants::of(3, &[(1, 2, 2, -a), (1, 2, 3, n), (1, 3, 2, -n.abs()), (1, 3, 3, -a)])
 }
 
-/// Rotations L_i and translations P_i: [L_i, L_j] = ε_ijk L_k, [L_i, P_j] = ε_ijk P_k.
+/// The constants of rotations L_i and translations P_i: [L_i, L_j] = ε_ijk L_k, [L_i, P_j] = ε_ijk P_k.
 fn motions_of_space() -> Constants {
     let mut constants = Constants::zero(6);
     for (i, j, k) in [(1, 2, 3), (2, 3, 1), (3, 1, 2)] {
@@ -109,8 +109,8 @@ fn motions_of_space() -> Constants {
     constants
 }
 
-/// R_23, R_31, R_12, R_14, R_24, R_34, R_15, … where R_ij turns axis i towards axis j: [R_ij, R_jl] = −R_il,
-/// R_ji = −R_ij.
+/// The constants of R_23, R_31, R_12, R_14, R_24, R_34, R_15, …, where R_ij turns axis i towards axis j:
+/// [R_ij, R_jl] = −R_il, R_ji = −R_ij.
 fn rotations(n: usize) -> Constants {
     let mut basis = vec![(2, 3), (3, 1), (1, 2)];
     basis.extend((4..=n).flat_map(|j| (1..j).map(move |i| (i, j))));

@@ -1,5 +1,5 @@
-//! The second derivation: the text over dual numbers at a place, and the parts that are linear in velocities
-//! there.
+//! The second derivation: the text evaluated over dual numbers at a place, and the parts that are linear in
+//! velocities there.
 
 use crate::derivation::place::{Direction, Place};
 use crate::derivation::point::Point;
@@ -12,12 +12,12 @@ use crate::numbers::units::Units;
 use crate::text::couplings::Couplings;
 use crate::text::text::Text;
 
-/// A quasi-velocity that is not declared, but completes those defined by `is` to the number of coordinates.
+/// An undeclared quasi-velocity, added to bring those defined by `is` up to the number of coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Completing {
     /// ẋ_i
     Velocity(usize),
-    /// The left side of a constraint, which is 0.
+    /// The left-hand side of a constraint, which is 0.
     Constraint(usize),
 }
 
@@ -39,17 +39,17 @@ pub(crate) struct Derivation {
     pub(crate) on_positions: Vec<bool>,
     /// The constraints that are independent of the preceding ones.
     pub(crate) kept: Vec<usize>,
-    /// The quasi-velocities that complete the declared ones.
+    /// The quasi-velocities added to the declared ones.
     pub(crate) completing: Vec<Completing>,
     pub(crate) structure: Structure,
-    /// Which second derivatives of L by velocities vanish.
+    /// The record of which second derivatives of L with respect to velocities vanish.
     pub(crate) couplings: Couplings,
     /// The sizes of the components of states.
     pub(crate) units: Units,
 }
 
 impl Derivation {
-    /// The point of a place that changes in a direction.
+    /// The point at a place that changes in one direction.
     pub(crate) fn once<'a>(&'a self, at: &Place, along: &Direction, rounding: &'a Rounding) -> Point<'a, D1> {
         let both = |values: &[f64], rates: &[f64]| -> Vec<D1> {
             values.iter().zip(rates).map(|(&value, &rate)| D1::new(value, rate)).collect()
@@ -58,7 +58,7 @@ impl Derivation {
         Point::new(&self.text, rounding, D1::new(at.t, along.t), all)
     }
 
-    /// The point of a place that changes in two directions.
+    /// The point at a place that changes in two directions.
     pub(crate) fn twice<'a>(
         &'a self,
         at: &Place,
@@ -76,12 +76,12 @@ impl Derivation {
         Point::new(&self.text, rounding, number(at.t, first.t, second.t), [x, w, z])
     }
 
-    /// The point of a place without changes.
+    /// The point at a place that does not change.
     pub(crate) fn still<'a>(&'a self, at: &Place, rounding: &'a Rounding) -> Point<'a, f64> {
         Point::new(&self.text, rounding, at.t, [at.x.clone(), at.w.clone(), at.z.clone()])
     }
 
-    /// φ_α of these constraints.
+    /// The values φ_α of these constraints.
     pub(crate) fn constraints(
         &self,
         which: &[usize],
@@ -105,7 +105,7 @@ impl Derivation {
         which.iter().map(rate).collect()
     }
 
-    /// ∂φ_α/∂w_s, a row for each of these constraints.
+    /// The matrix ∂φ_α/∂w_s, with a row for each of these constraints.
     pub(crate) fn constraint_matrix(
         &self,
         which: &[usize],
@@ -129,7 +129,7 @@ impl Derivation {
         (0..at.w.len()).map(field).collect()
     }
 
-    /// Those of the given constraints that are independent, at a place, of the preceding ones.
+    /// Those of the given constraints that are independent of the preceding ones at a place.
     pub(crate) fn independent(&self, at: &Place, of: &[usize]) -> Result<Vec<usize>, Irregular> {
         let rows = independent_rows(&self.constraint_matrix(of, at, &Rounding::none())?, at.w.len());
         Ok(rows.into_iter().map(|row| of[row]).collect())

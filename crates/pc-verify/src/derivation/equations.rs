@@ -1,13 +1,13 @@
 //! The equations of motion at one state, by Lagrange's equations with multipliers.
 //!
-//! With velocities w, ẋ = u(t, x, w), b_s = ∂u/∂w_s and constraints φ_α(t, x, w) = 0 the motion is that of
+//! With velocities w, ẋ = u(t, x, w), b_s = ∂u/∂w_s and constraints φ_α(t, x, w) = 0 the motion satisfies
 //!
 //!   D_t p_s − p·δw_s − X_s L − Q_s = λ_α ∂φ_α/∂w_s,   p_s = ∂L/∂w_s,   X_s L = b_is ∂L/∂x_i,
 //!
 //! where b δw_s = D_t b_s − (∂u/∂x) b_s: for a virtual displacement δx = ε b_s the variation of the velocity is
-//! δẋ = (δx)˙ = (∂u/∂x) δx + b δw, and δ∫L dt + ∫Q_s ε dt = 0 after an integration by parts. Where w = ẋ these
-//! are Lagrange's equations, δw = 0; otherwise they are Lagrange's for L̂(t, x, ẋ) = L(t, x, w(t, x, ẋ)),
-//! multiplied by bᵀ. Where b does not determine w the term is that of the brackets, p·δw_s = (c_rs^m η_r +
+//! δẋ = (δx)˙ = (∂u/∂x) δx + b δw, and δ∫L dt + ∫Q_s ε dt = 0 after an integration by parts. If w = ẋ these are
+//! Lagrange's equations, with δw = 0; otherwise they are Lagrange's for L̂(t, x, ẋ) = L(t, x, w(t, x, ẋ)),
+//! multiplied by bᵀ. If b does not determine w, the term follows from the brackets, p·δw_s = (c_rs^m η_r +
 //! c_0s^m) p_m, as in (9).
 
 use nalgebra::DMatrix;
@@ -20,10 +20,10 @@ use crate::numbers::linear::{Solution, fitting_inverse, solve};
 use crate::numbers::rounding::{Rounding, UNIT, within};
 use crate::text::text::Velocities;
 
-/// The equations at a place, solved.
+/// The solution of the equations at a place.
 #[derive(Clone, Debug)]
 pub(crate) struct Derived {
-    /// The place of evaluation.
+    /// The place at which the equations are evaluated.
     pub(crate) place: Place,
     /// ẋ
     pub(crate) velocities: Vec<f64>,
@@ -32,29 +32,29 @@ pub(crate) struct Derived {
     /// ẇ, each with the size of its terms.
     pub(crate) accelerations: Vec<f64>,
     pub(crate) acceleration_sizes: Vec<f64>,
-    /// The sizes of the terms of the forces, reactions included, and of the accelerations that each would
-    /// give to its own mass.
+    /// The sizes of the terms of the forces, including reactions, and of the accelerations that each would
+    /// impart to its own mass.
     pub(crate) force_sizes: Vec<f64>,
     pub(crate) unconstrained_sizes: Vec<f64>,
-    /// λ of the independent constraints, each with the size of its terms.
+    /// The multipliers λ of the independent constraints, each with the size of its terms.
     pub(crate) reactions: Vec<f64>,
     pub(crate) reaction_sizes: Vec<f64>,
-    /// p, its rate, and the size of the terms of the rate.
+    /// The momenta p, their rates, and the sizes of the terms of the rates.
     pub(crate) momenta: Vec<f64>,
     pub(crate) momentum_rates: Vec<f64>,
     pub(crate) momentum_rate_sizes: Vec<f64>,
-    /// The sizes of the terms of p, ∂²L/∂w∂w w, and of those of w if p is solved for it.
+    /// The sizes of the terms of p, ∂²L/∂w∂w w, and of the terms of w when p is solved for it.
     pub(crate) momentum_sizes: Vec<f64>,
     pub(crate) velocity_sizes: Vec<f64>,
-    /// L and its rate.
+    /// The Lagrangian L and its rate.
     pub(crate) lagrangian: f64,
     pub(crate) lagrangian_rate: f64,
-    /// The condition of the equations.
+    /// The condition number of the equations.
     pub(crate) condition: f64,
 }
 
 impl Derivation {
-    /// The equations at a place.
+    /// Solves the equations at a place.
     pub(crate) fn at(&self, at: &Place, rounding: &Rounding) -> Result<Derived, Irregular> {
         let k = at.w.len();
         let here = self.still(at, rounding);
@@ -201,7 +201,7 @@ impl Derivation {
         Ok(all)
     }
 
-    /// Checks that the motion also satisfies the constraints left out as dependent.
+    /// Checks that the motion also satisfies the constraints that were left out as dependent.
     fn require_followed(
         &self,
         at: &Place,
@@ -238,9 +238,9 @@ impl Derivation {
     }
 }
 
-/// The greatest error of closure of the brackets of a frame; an error of derivation is of order one.
+/// The greatest error with which the brackets of a frame may close; an error of derivation is of order one.
 const CLOSED: f64 = 1e-7;
 
-/// The greatest residual of a dependent constraint, relative to its terms at accelerations of at least one; an
-/// error of derivation is of order one.
+/// The greatest residual that a dependent constraint may have, relative to its terms with accelerations of at
+/// least one; an error of derivation is of order one.
 const FOLLOWED: f64 = 1e-6;

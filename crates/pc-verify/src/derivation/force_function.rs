@@ -1,30 +1,31 @@
-//! Which forces on bodies count in the energy.
+//! The choice of the forces on bodies that count in the energy.
 //!
 //! A force F on a body at r that depends on the position alone, and is homogeneous of degree d in r there,
-//! has the force function U = F·r/(d + 1) (Euler) if F·X_s r = X_s U for all s. The text format adds such
-//! forces, whole or by components, to L; the first derivation chooses them by the symbols that the
-//! expressions contain: at a state where its rate vanishes, a time-dependent force looks like a constant
-//! one, and velocities that cancel leave rounding. Here that choice is justified in numbers: the force does
-//! not change with the velocities, and the quotient μ of F·X_s r and X_s (F·r) is one constant for all s, at
-//! all places and for other values of the parameters.
+//! has the force function U = F·r/(d + 1) (Euler) if F·X_s r = X_s U for all s. The text format adds the
+//! force functions of such forces, as a whole or by components, to L; the first derivation chooses the forces
+//! by the symbols that their expressions contain: at a state where its rate vanishes, a time-dependent force
+//! looks like a constant one, and velocities that cancel leave rounding errors. Here that choice is confirmed
+//! numerically: the force does not change with the velocities, and the quotient μ of F·X_s r and X_s (F·r) is
+//! the same constant for all s, at all places and for other values of the parameters.
 
 use crate::derivation::derivation::Derivation;
 use crate::derivation::place::Place;
 use crate::error::Irregular;
 use crate::numbers::rounding::{Random, Rounding, within};
 
-/// The number of places at which the quotient is tested, for the present parameters and for others.
+/// The number of places at which the quotient is tested, for the present values of the parameters and for
+/// others.
 const PLACES: usize = 6;
 
-/// The greatest change of parameters and places.
+/// The greatest relative change of parameters, and distance of places.
 const MOVED: f64 = 0.3;
 
-/// The remainder that rounding may leave, relative to the larger of both sides.
+/// The remainder that rounding errors may leave, relative to the larger of the two sides.
 const ALIKE: f64 = 1e-9;
 
 impl Derivation {
-    /// Finds the factors μ_i of F_i r_i for all bodies, for the components chosen by the name of the
-    /// body and their index.
+    /// Finds the factors μ_i of F_i r_i for all bodies, for the components that `chosen` selects, given the
+    /// name of the body and their index.
     pub(crate) fn find_force_functions(&mut self, near: &Place, chosen: impl Fn(&str, usize) -> bool) {
         let mut random = Random::new(1);
         let mut other = self.clone();
@@ -83,7 +84,7 @@ impl Derivation {
         pairs().all(is_exact).then_some(factor)
     }
 
-    /// Both sides for these components of the force on a body.
+    /// Both sides of the equation for these components of the force on a body.
     fn sides(&self, body: usize, components: &[usize], at: &Place) -> Result<Sides, Irregular> {
         let (exact, body) = (Rounding::none(), &self.text.bodies[body]);
         let still = self.still(at, &exact);
@@ -111,11 +112,12 @@ impl Derivation {
     }
 }
 
-/// The action of the force on a body at a place.
+/// The two sides that are compared for the force on a body at a place, and what they depend on.
 struct Sides {
     /// F·X_s r and X_s (F·r) for all s.
     of_fields: Vec<[f64; 2]>,
-    /// The derivatives of its components by the velocities, and the largest term of each.
+    /// The derivatives of the components of the force with respect to the velocities, and the largest term of
+    /// each component.
     rates: Vec<f64>,
     terms: Vec<f64>,
 }

@@ -1,4 +1,4 @@
-//! The second derivation at a place.
+//! The results of the second derivation at a place.
 
 use crate::derivation::derivation::Derivation;
 use crate::derivation::equations::Derived;
@@ -6,11 +6,11 @@ use crate::derivation::quantity::Free;
 use crate::error::Irregular;
 use crate::numbers::rounding::Rounding;
 
-/// The second derivation at a place.
+/// The results of the second derivation at a place.
 #[derive(Clone, Debug)]
 pub(crate) struct Here {
     pub(crate) derived: Derived,
-    /// The columns there.
+    /// The values of the columns at that place.
     pub(crate) columns: Vec<f64>,
 }
 

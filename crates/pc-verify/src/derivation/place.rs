@@ -1,6 +1,6 @@
-//! States, and how they change.
+//! Places, which are states at a time, and directions in which they change.
 
-/// A time, coordinates, velocities w and first-order states.
+/// A place: a time, coordinates, velocities w and first-order states.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Place {
     pub(crate) t: f64,
@@ -26,19 +26,19 @@ pub(crate) struct Virtual {
 }
 
 impl Place {
-    /// The direction of w_s.
+    /// The direction in which w_s alone changes.
     pub(crate) fn along_velocity(&self, s: usize) -> Direction {
         let mut still = self.along(vec![0.0; self.x.len()]);
         still.w[s] = 1.0;
         still
     }
 
-    /// A direction of the coordinates.
+    /// A direction in which the coordinates alone change.
     pub(crate) fn along(&self, x: Vec<f64>) -> Direction {
         Direction { t: 0.0, x, w: vec![0.0; self.w.len()], z: vec![0.0; self.z.len()] }
     }
 
-    /// The direction of time, with moving coordinates and first-order states at rest.
+    /// The direction of time, in which coordinates move and velocities and first-order states are at rest.
     pub(crate) fn in_time(&self, velocity: &[f64]) -> Direction {
         Direction { t: 1.0, ..self.along(velocity.to_vec()) }
     }

@@ -1,4 +1,4 @@
-//! Terms evaluated at a point, over numbers with any directions of change.
+//! Terms evaluated at a point, over numbers that may change in several directions.
 
 use std::cell::{Cell, OnceCell};
 
@@ -10,10 +10,12 @@ use crate::text::resultant::Resultants;
 use crate::text::term::{Function, Term};
 use crate::text::text::{Text, Velocities};
 
-/// The deepest nesting of definitions by calls; with more definitions, earlier ones are evaluated in order.
+/// The largest number of definitions that are evaluated by nested calls; if there are more, earlier ones are
+/// evaluated in order first.
 const DEEP: usize = 64;
 
-/// Time, coordinates and velocities w as numbers, with everything that follows from them.
+/// A point: time, coordinates, velocities w and first-order states as numbers, with everything that follows
+/// from them.
 pub(crate) struct Point<'a, T: Number> {
     text: &'a Text,
     rounding: &'a Rounding,
@@ -30,7 +32,7 @@ pub(crate) struct Point<'a, T: Number> {
     /// The reactions on bodies, if known.
     resultants: Option<Resultants>,
     definitions: Vec<OnceCell<T>>,
-    /// The largest summands of definitions.
+    /// The largest summand of each definition.
     pub(crate) largest: Vec<OnceCell<f64>>,
     /// The number of definitions already evaluated in order.
     tried: Cell<usize>,
@@ -38,14 +40,14 @@ pub(crate) struct Point<'a, T: Number> {
     open: Vec<Cell<bool>>,
     velocities: OnceCell<Vec<T>>,
     moving: OnceCell<Box<dyn Moving<T> + 'a>>,
-    /// The same with first-order states at rest, for their own rates, which contain no total derivative of a
-    /// state.
+    /// The same point with first-order states at rest. It serves for their own rates, which contain no total
+    /// derivative of a state.
     moving_without_states: OnceCell<Box<dyn Moving<T> + 'a>>,
     /// Whether the rates of the first-order states are being evaluated.
     in_state_rates: Cell<bool>,
 }
 
-/// A point as it moves in time; boxed, since nested points would have infinite types.
+/// A point as it moves in time; it is boxed, since the types of nested points would be infinite.
 trait Moving<T> {
     /// The rate of a term.
     fn rate(&self, term: &Term) -> Result<T, Irregular>;
@@ -60,7 +62,7 @@ impl<T: Number> Moving<T> for Moved<'_, T> {
 }
 
 impl<'a, T: Number> Point<'a, T> {
-    /// The point of time, coordinates, velocities and first-order states.
+    /// The point at this time, with these coordinates, velocities and first-order states.
     pub(crate) fn new(text: &'a Text, rounding: &'a Rounding, t: T, [x, w, z]: [Vec<T>; 3]) -> Point<'a, T> {
         Point {
             text,
@@ -84,7 +86,7 @@ impl<'a, T: Number> Point<'a, T> {
         }
     }
 
-    /// The point on a motion with known accelerations and reactions.
+    /// The point on a motion whose accelerations and reactions are known.
     pub(crate) fn on_motion(self, accelerations: Vec<T>, reactions: Vec<f64>) -> Point<'a, T> {
         Point { accelerations: Some(accelerations), reactions: Some(reactions), ..self }
     }
@@ -94,7 +96,7 @@ impl<'a, T: Number> Point<'a, T> {
         Point { resultants, ..self }
     }
 
-    /// The point without w.
+    /// The point with w unknown.
     fn without_velocities(self) -> Point<'a, T> {
         Point { knows_velocities: false, ..self }
     }
@@ -107,7 +109,7 @@ impl<'a, T: Number> Point<'a, T> {
         value.rounded(self.rounding)
     }
 
-    /// Checks that there is time left; every longer evaluation calls it.
+    /// Checks that there is time left; every longer evaluation calls this.
     fn within_limits(&self) -> Result<(), Irregular> {
         self.text.deadline.passed().map_or(Ok(()), |what| Err(Irregular::Spent { what }))
     }
@@ -237,7 +239,7 @@ impl<'a, T: Number> Point<'a, T> {
         })
     }
 
-    /// The value of a parameter, or of an input at this time, which has no known rate.
+    /// The value of a parameter, or of an input at this time; the rate of an input is not known.
     pub(crate) fn parameter(&self, j: usize) -> f64 {
         match self.text.tables.iter().find(|(place, _)| *place == j) {
             Some((_, table)) => {
@@ -330,14 +332,14 @@ impl<'a, T: Number> Point<'a, T> {
     }
 
     /// The expression of constraint number `a` that stays zero and contains velocities: the constraint
-    /// itself, or the rate of one on positions.
+    /// itself, or its rate if it is a constraint on positions.
     pub(crate) fn velocity_constraint(&self, a: usize, on_positions: bool) -> Result<T, Irregular> {
         self.within_limits()?;
         let term = &self.text.constraints[a];
         if on_positions { self.rate(term) } else { self.value(term) }
     }
 
-    /// L, the kinetic energy of the bodies included.
+    /// L, including the kinetic energy and the force functions of the bodies.
     pub(crate) fn lagrangian(&self) -> Result<T, Irregular> {
         let mut lagrangian = self.own_lagrangian()?;
         for body in &self.text.bodies {
@@ -375,7 +377,7 @@ impl<'a, T: Number> Point<'a, T> {
         Ok(self.round(twice * 0.5))
     }
 
-    /// m g·r, and the force function of its force if it has one.
+    /// The force function of a body: m g·r, plus the force function of the force on it if there is one.
     fn force_function(&self, body: &Body) -> Result<T, Irregular> {
         let mut function = T::constant(0.0);
         if !self.text.gravity.is_empty() {
@@ -392,7 +394,7 @@ impl<'a, T: Number> Point<'a, T> {
         Ok(self.round(function))
     }
 
-    /// ω: as given, or the vector of RᵀṘ.
+    /// ω as it is given, or as the vector of RᵀṘ.
     pub(crate) fn angular_velocity(&self, body: &Body) -> Result<Vec<T>, Irregular> {
         match &body.turning {
             Some(Turning::AngularVelocity(omega)) => self.all(omega),

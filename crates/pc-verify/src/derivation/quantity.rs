@@ -11,34 +11,34 @@ pub(crate) enum Quantity {
     Acceleration(usize),
     /// ż_j
     StateRate(usize),
-    /// η_s of the columns: quasi-velocities, or ẋ where none is declared.
+    /// The η_s of a column: a quasi-velocity, or ẋ_s where none is declared.
     Column(usize),
-    /// η̇_s of the columns.
+    /// The η̇_s of a column.
     ColumnRate(usize),
-    /// The left side of constraint number α, or its rate: 0.
+    /// The left-hand side of a constraint, or its rate: 0.
     Zero,
-    /// λ_α by the number of the constraint.
+    /// λ_α of the constraint with this number.
     Reaction(usize),
     /// A reaction on a body.
     Resultant(Resultant),
-    /// y·η − L of all velocities.
+    /// The energy y·η − L of all velocities.
     Energy,
-    /// y_f of the free quasi-velocities, by their indices among these.
+    /// y_f of a free quasi-velocity, given its index among these.
     Momentum(usize),
     MomentumRate(usize),
-    /// y_f η_f − L of the free quasi-velocities, and its rate.
+    /// The energy y_f η_f − L of the free quasi-velocities, and its rate.
     FreeEnergy,
     FreeEnergyRate,
-    /// An integral or output, by its index in the text.
+    /// The integral or output that has this index in the text.
     Observed(usize),
 }
 
-/// A quasi-velocity that is free, or whose momentum is part of the state.
+/// A quasi-velocity that is free, or whose momentum is a component of the state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Free {
-    /// The quasi-velocity of a column.
+    /// The quasi-velocity in this column.
     Column(usize),
-    /// The left side of a constraint.
+    /// The left-hand side of a constraint.
     Constraint(usize),
     /// ẋ_i
     Velocity(usize),

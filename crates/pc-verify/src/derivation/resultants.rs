@@ -1,9 +1,9 @@
-//! Reactions as forces and torques on bodies, by virtual work.
+//! Reactions as forces and torques on bodies, determined by virtual work.
 //!
 //! Forces F at the points of the bodies, torques N on them and impulses on other terms of the kinetic energy
-//! do the work of the reactions on all virtual velocities: Jᵀ F = λ_α ∂φ_α/∂w, where J has the rows ∂ṙ/∂w,
-//! ∂ω/∂w and ∂p/∂w. The least F is that of the pseudo-inverse; the parts of it that the first derivation
-//! considers determined are compared.
+//! do the same work as the reactions, for all virtual velocities: Jᵀ F = λ_α ∂φ_α/∂w, where J has the rows
+//! ∂ṙ/∂w, ∂ω/∂w and ∂p/∂w. The smallest F results from the pseudo-inverse; those parts of it are compared
+//! that the first derivation considers determined.
 
 use nalgebra::DMatrix;
 

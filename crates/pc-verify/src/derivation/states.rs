@@ -10,10 +10,10 @@ use crate::numbers::linear::{matrix, shortest_inverse};
 use crate::numbers::rounding::{Random, Rounding};
 use crate::text::text::Velocities;
 
-/// The sizes of the random displacements, in turn.
+/// The sizes of the random displacements, used in turn.
 const SCALES: [f64; 4] = [1.0, 0.3, 0.05, 0.002];
 
-/// The number of smaller displacements that are tried if a size does not lead to a state.
+/// The number of smaller displacements that are tried if a displacement of one size does not lead to a state.
 const ATTEMPTS: i32 = 5;
 
 impl Derivation {
@@ -32,7 +32,7 @@ impl Derivation {
         outcome
     }
 
-    /// A state at this distance from a place.
+    /// A random state at about this distance from a place.
     pub(crate) fn random_within(
         &self,
         near: &Place,
@@ -49,13 +49,14 @@ impl Derivation {
         self.on_constraints(at)
     }
 
-    /// A step in time, backwards if inputs have values only there: a table may begin with the motion.
+    /// A step in time, reversed if inputs have values only on the other side: a table may begin with the
+    /// motion.
     fn within_tables(&self, t: f64, step: f64) -> f64 {
         let is_known = |t: f64| self.text.tables.iter().all(|(_, table)| table.at(t).is_some());
         if !is_known(t + step) && is_known(t - step) { -step } else { step }
     }
 
-    /// The velocities at which coordinates change by their own size in a unit of time.
+    /// The velocities with which coordinates change by their own size in a unit of time.
     fn sizes(&self, at: &Place) -> Vec<f64> {
         match self.text.velocities {
             Velocities::Ordinary(_) => {
@@ -65,8 +66,9 @@ impl Derivation {
         }
     }
 
-    /// The place reached from another one by moving with velocity b ξ + τ b_0 for a unit of time, during
-    /// which t grows by τ: it stays on the leaf of the frame. The step is ξ in terms of its sizes there.
+    /// The place reached from another one by moving with the velocity b ξ + τ b_0 for a unit of time, during
+    /// which t grows by τ; this place is on the same leaf of the frame. `step` is ξ in units of the sizes
+    /// that velocities have at the first place.
     fn moved(&self, from: &Place, tau: f64, step: &[f64]) -> Result<Place, Irregular> {
         let xi: Vec<f64> = self.sizes(from).iter().zip(step).map(|(size, step)| size * step).collect();
         if let Velocities::Ordinary(_) = self.text.velocities {
@@ -105,7 +107,7 @@ impl Derivation {
         }
     }
 
-    /// A nearby place that satisfies the constraints, by Newton's method in steps of least length.
+    /// A nearby place that satisfies the constraints, found by Newton's method with steps of least length.
     pub(crate) fn on_constraints(&self, mut at: Place) -> Result<Place, Irregular> {
         let exact = Rounding::none();
         let all = 0..self.on_positions.len();
@@ -137,7 +139,7 @@ impl Derivation {
         Ok(at)
     }
 
-    /// Repeats a step, which returns its length, until the length is rounding.
+    /// Repeats a step, which returns its length, until the length is at the level of rounding errors.
     fn settle(&self, mut step: impl FnMut() -> Result<f64, Irregular>) -> Result<(), Irregular> {
         for _ in 0..NEWTON {
             if step()? <= SETTLED {
@@ -165,14 +167,14 @@ fn shortest(rows: &[Vec<f64>], rest: &[f64], columns: usize) -> Result<Vec<f64>,
     }
 }
 
-/// The shortest fraction of a displacement.
+/// The smallest fraction of a displacement that is made in one step.
 const SHORTEST: f64 = 1.0 / 64.0;
 
-/// The numbers of parts of a step, for extrapolation to infinitely many.
+/// The numbers of parts into which a step is divided, for extrapolation to infinitely many.
 const PARTS: [usize; 8] = [2, 4, 6, 8, 10, 12, 14, 16];
 
 /// The step of Gragg, Bulirsch and Stoer: the midpoint rule with increasing numbers of parts, extrapolated;
-/// an error unless the result is accurate to rounding.
+/// an error unless the result is accurate to within rounding errors.
 fn extrapolated(
     rate: impl Fn(f64, &[f64]) -> Result<Vec<f64>, Irregular>,
     s: f64,

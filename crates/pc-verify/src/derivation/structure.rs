@@ -8,9 +8,9 @@ use crate::text::text::{Brackets, Text};
 /// The source of the brackets.
 #[derive(Clone, Debug)]
 pub(crate) enum Structure {
-    /// From the frame: b has as many independent columns as there are quasi-velocities.
+    /// The frame, if b has as many independent columns as there are quasi-velocities.
     Frame,
-    /// They are constants.
+    /// Constants that are given by the name of an algebra.
     Constant(Constants),
     /// A table whose values may depend on parameters and time.
     Table(Vec<(usize, usize, Term)>),
@@ -19,7 +19,7 @@ pub(crate) enum Structure {
 }
 
 impl Structure {
-    /// The source of the brackets, if `rank` of the `k` fields are independent at a point.
+    /// The source of the brackets, given that `rank` of the `k` fields are independent at a point.
     pub(crate) fn new(text: &Text, rank: usize, k: usize) -> Result<Structure, Unable> {
         if rank == k {
             return Ok(Structure::Frame);

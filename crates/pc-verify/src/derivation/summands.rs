@@ -6,9 +6,9 @@ use crate::numbers::number::Number;
 use crate::text::term::Term;
 
 impl Point<'_, f64> {
-    /// The largest summand of a term, through its sums, products and definitions: |x| + |y| for x − y,
-    /// however small the difference. Arguments of functions and powers count as exact; deliberate rounding
-    /// errors show their effect.
+    /// The largest summand of a term, found through its sums, products and definitions: for x − y it is the
+    /// larger of |x| and |y|, however small the difference is. Arguments of functions and powers count as
+    /// exact; the effect of their errors is found by deliberate rounding errors.
     pub(crate) fn largest_term(&self, term: &Term) -> Result<f64, Irregular> {
         Ok(match term {
             Term::Negative(inner) => self.largest_term(inner)?,

@@ -1,4 +1,4 @@
-//! Quasi-velocities as functions of the velocities w, and back.
+//! Quasi-velocities as functions of the velocities w, and the inverse functions.
 
 use nalgebra::DMatrix;
 
@@ -12,7 +12,8 @@ use crate::numbers::rounding::Rounding;
 use crate::text::text::Velocities;
 
 impl Derivation {
-    /// ∂η_s/∂w of the quasi-velocities, a row for each; or ordinary velocities if none is declared.
+    /// The matrix ∂η_s/∂w, with a row for each quasi-velocity, or for each ordinary velocity if no
+    /// quasi-velocity is declared.
     pub(crate) fn quasi_velocity_matrix(
         &self,
         at: &Place,
@@ -27,7 +28,7 @@ impl Derivation {
         Ok(rows)
     }
 
-    /// The number of quasi-velocities that are columns.
+    /// The number of columns: of declared quasi-velocities, or of coordinates if none is declared.
     pub(crate) fn declared(&self) -> usize {
         match self.text.names.quasi_velocities.len() {
             0 => self.text.coordinates(),
@@ -35,7 +36,7 @@ impl Derivation {
         }
     }
 
-    /// η, or ẋ if none is declared.
+    /// The values of the columns: η, or ẋ if no quasi-velocity is declared.
     pub(crate) fn columns<T: Number>(&self, point: &Point<'_, T>) -> Result<Vec<T>, Irregular> {
         if self.text.names.quasi_velocities.is_empty() {
             return Ok(point.velocities()?.to_vec());
@@ -43,7 +44,8 @@ impl Derivation {
         point.quasi_velocities()
     }
 
-    /// The velocities w at which η has these values and the constraints hold, by least squares if w = ẋ.
+    /// The velocities w for which η has these values and the constraints hold; if w = ẋ, they are found by
+    /// least squares.
     pub(crate) fn velocities_of(&self, t: f64, x: &[f64], eta: &[f64]) -> Result<Vec<f64>, Irregular> {
         match &self.text.velocities {
             Velocities::Quasi(_) => return Ok(eta.to_vec()),
@@ -71,8 +73,8 @@ impl Derivation {
         Err(Irregular::OffConstraints)
     }
 
-    /// ẋ at zero quasi-velocities, including those that complete the defined ones, and its rate along the
-    /// motion: b_0 if quasi-velocities are defined by ẋ. Otherwise zero, as w = η needs no addition.
+    /// ẋ when all quasi-velocities vanish, including those added to the defined ones, and its rate along the
+    /// motion: b_0 if quasi-velocities are defined in terms of ẋ; otherwise zero.
     pub(crate) fn drift(
         &self,
         at: &Place,
@@ -108,8 +110,8 @@ impl Derivation {
     }
 }
 
-/// Steps of Newton's method.
+/// The largest number of steps of Newton's method.
 pub(crate) const NEWTON: usize = 30;
 
-/// The length of a step that is rounding.
+/// The relative length of a step that is attributed to rounding errors.
 pub(crate) const SETTLED: f64 = 1e-13;

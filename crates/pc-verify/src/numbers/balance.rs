@@ -1,8 +1,8 @@
-//! Sums with the size of their terms.
+//! Sums, with the size of their terms.
 
 use crate::numbers::rounding::within;
 
-/// Terms that are summed, and the largest of them.
+/// The sum of some terms, and the size of the largest of them.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Balance {
     pub(crate) sum: f64,

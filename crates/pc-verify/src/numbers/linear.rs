@@ -1,5 +1,6 @@
-//! Dense matrices with pivoting, block by block: n uncoupled coordinates cost n small matrices. The size of an
-//! equation and the units of an unknown do not affect the rank: rows and columns are scaled first.
+//! Dense matrices with pivoting, block by block: n uncoupled coordinates need only n small matrices. The size
+//! of an equation and the units of an unknown do not affect the rank, because rows and columns are scaled
+//! first.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,22 +10,24 @@ use crate::numbers::rounding::within;
 /// Singular values below this fraction of the largest count as zero.
 const RANK: f64 = 1e-9;
 
-/// The factor beyond which a rank is not in doubt: the rounding of a decomposition is some thousand times
-/// the condition.
+/// A rank is not in doubt if the threshold for zero is below this fraction of every singular value: the
+/// relative rounding error of a decomposition is some thousand units in the last place times the condition
+/// number.
 const CERTAIN: f64 = 0.1;
 
-/// Entries below this fraction of the largest of their row may be some hundred roundings of it.
+/// Entries below this fraction of the largest entry of their row may consist of some hundred rounding errors
+/// of that entry.
 const NOISE: f64 = 1e-13;
 
 /// Pivots below this fraction of the largest make equations singular.
 const PIVOT: f64 = 1e-13;
 
-/// The matrix of these rows, of `columns` entries each.
+/// The matrix with these rows, which have `columns` entries each.
 pub(crate) fn matrix(rows: &[Vec<f64>], columns: usize) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j])
 }
 
-/// Rows and columns of a matrix, ascending, that are connected by nonzero entries.
+/// A block of a matrix: the rows and columns, ascending, that are connected by nonzero entries.
 struct Block {
     rows: Vec<usize>,
     columns: Vec<usize>,
@@ -36,7 +39,7 @@ impl Block {
     }
 }
 
-/// The blocks of a matrix. Zero rows and columns are blocks of their own.
+/// The blocks of a matrix. Each zero row or column is a block of its own.
 fn blocks(a: &DMatrix<f64>) -> Vec<Block> {
     let (m, n) = a.shape();
     // Each points towards the first of its block; columns follow the rows.
@@ -69,7 +72,7 @@ fn blocks(a: &DMatrix<f64>) -> Vec<Block> {
     blocks
 }
 
-/// A⁻ with A A⁻ A = A, A⁻ A A⁻ = A⁻, and the rank: A⁻ r solves A z = r wherever this has solutions, whatever the
+/// A⁻ with A A⁻ A = A and A⁻ A A⁻ = A⁻, and the rank. A⁻ r solves A z = r if this has solutions, whatever the
 /// sizes of the equations and the units of the unknowns.
 pub(crate) fn solving_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, usize)> {
     let rows = row_weights(a, &vec![1.0; a.ncols()]);
@@ -83,8 +86,8 @@ pub(crate) fn shortest_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, usize)
     weighted_inverse(a, &row_weights(a, &columns), &columns)
 }
 
-/// As [`solving_inverse`]; A⁻ r leaves the least squares of A z − r, so that equations that are mere rounding
-/// have no weight.
+/// As [`solving_inverse`]; z = A⁻ r minimises the sum of the squares of A z − r, so that equations that
+/// consist of mere rounding errors have no weight.
 pub(crate) fn fitting_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, usize)> {
     let rows = vec![1.0; a.nrows()];
     weighted_inverse(a, &rows, &column_weights(a, &rows))
@@ -97,14 +100,14 @@ fn weighted_inverse(a: &DMatrix<f64>, rows: &[f64], columns: &[f64]) -> Option<(
     Some((DMatrix::from_fn(a.ncols(), a.nrows(), |i, j| columns[i] * inverse[(i, j)] * rows[j]), rank))
 }
 
-/// Powers of two by which the largest entry of each row is near 1.
+/// Powers of two that scale the largest entry of each row to about 1.
 fn row_weights(a: &DMatrix<f64>, columns: &[f64]) -> Vec<f64> {
     let entry = |i: usize, j: usize| (a[(i, j)] * columns[j]).abs();
     (0..a.nrows()).map(|i| weight((0..a.ncols()).map(|j| entry(i, j)).fold(0.0, f64::max))).collect()
 }
 
-/// Powers of two by which the largest entry of each column is near 1. Entries that are rounding of others in
-/// their row do not determine a unit of the column.
+/// Powers of two that scale the largest entry of each column to about 1. Entries that are mere rounding
+/// errors of others in their row do not determine the scale of a column.
 fn column_weights(a: &DMatrix<f64>, rows: &[f64]) -> Vec<f64> {
     let noise: Vec<f64> = a.row_iter().map(|row| NOISE * row.amax()).collect();
     let column = |j: usize| {
@@ -119,7 +122,7 @@ fn weight(largest: f64) -> f64 {
     if power.is_normal() { power } else { 1.0 }
 }
 
-/// The pseudo-inverse, with the rank, block by block.
+/// The pseudo-inverse and the rank, computed block by block.
 fn pseudo_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, usize)> {
     let mut inverse = DMatrix::zeros(a.ncols(), a.nrows());
     if a.is_empty() {
@@ -153,7 +156,7 @@ fn pseudo_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, usize)> {
     Some((inverse, rank))
 }
 
-/// The pseudo-inverse by orthogonal elimination, unless the rank is in doubt: singular values are at least
+/// The pseudo-inverse by orthogonal elimination; none if the rank is in doubt: singular values are at least
 /// 1/‖A⁺‖, and at most the norm of the full matrix, `largest`.
 fn of_full_rank(a: &DMatrix<f64>, largest: f64) -> Option<(DMatrix<f64>, usize)> {
     let rank = a.nrows().min(a.ncols());
@@ -170,7 +173,7 @@ fn of_full_rank(a: &DMatrix<f64>, largest: f64) -> Option<(DMatrix<f64>, usize)>
     Some((if is_tall { inverse } else { inverse.transpose() }, rank))
 }
 
-/// The pseudo-inverse by singular values, which show the rank.
+/// The pseudo-inverse by singular values, which also show the rank.
 fn by_singular_values(blocks: &[(Block, DMatrix<f64>)]) -> Option<Vec<(DMatrix<f64>, usize)>> {
     let parts: Vec<_> =
         blocks.iter().map(|(_, part)| (!part.is_empty()).then(|| part.clone().svd(true, true))).collect();
@@ -189,8 +192,8 @@ fn by_singular_values(blocks: &[(Block, DMatrix<f64>)]) -> Option<Vec<(DMatrix<f
     Some(inverses)
 }
 
-/// The indices of rows of `width` entries each that are independent of the preceding ones, by the method of
-/// Gram and Schmidt.
+/// The indices of rows of `width` entries each that are independent of the preceding ones, found by the
+/// method of Gram and Schmidt.
 pub(crate) fn independent_rows(rows: &[Vec<f64>], width: usize) -> Vec<usize> {
     let all = matrix(rows, width);
     let columns = column_weights(&all, &row_weights(&all, &vec![1.0; width]));
@@ -249,7 +252,7 @@ pub(crate) fn solve(a: &DMatrix<f64>, right: &[f64], terms: &[f64]) -> Result<So
     Ok(Solution { values: values.iter().copied().collect(), sizes, inverse, condition })
 }
 
-/// The inverse, block by block, unless a pivot is too small relative to the largest.
+/// The inverse, computed block by block; none if a pivot is too small relative to the largest.
 fn inverse_by_pivots(a: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let mut inverse = DMatrix::zeros(a.nrows(), a.ncols());
     let (mut least, mut largest) = (f64::INFINITY, 0.0f64);
@@ -268,7 +271,7 @@ fn inverse_by_pivots(a: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     within(PIVOT * largest, least).then_some(inverse)
 }
 
-/// Powers of two that scale rows and columns to largest entries near 1.
+/// Powers of two that scale the largest entries of rows and columns to about 1.
 fn scales(a: &DMatrix<f64>) -> (Vec<f64>, Vec<f64>) {
     let (mut rows, mut columns) = (vec![1.0; a.nrows()], vec![1.0; a.ncols()]);
     let power = |largest: f64| if largest > 0.0 { (-largest.log2() / 2.0).round().exp2() } else { 1.0 };
@@ -290,7 +293,7 @@ mod tests {
     use super::*;
     use crate::numbers::rounding::Random;
 
-    /// A matrix of such blocks, with rows and columns in a different order.
+    /// A matrix with these blocks, its rows and columns being put in a different order.
     fn shuffled(parts: &[DMatrix<f64>]) -> DMatrix<f64> {
         let (m, n) = (parts.iter().map(DMatrix::nrows).sum(), parts.iter().map(DMatrix::ncols).sum());
         let mut all = DMatrix::zeros(m, n);
@@ -311,7 +314,7 @@ mod tests {
         factor(m, rank) * factor(rank, n)
     }
 
-    /// The four equations of Penrose, to some hundred roundings of numbers near 10.
+    /// Penrose's four equations hold to within some hundred rounding errors of numbers near 10.
     #[test]
     fn blocks_have_the_pseudo_inverse_of_the_whole() {
         let full = [random(4, 4, 4), random(5, 2, 2), random(1, 3, 1)];
@@ -365,7 +368,8 @@ mod tests {
         assert_eq!(independent_rows(&[rows[1].clone(), multiple], 3), [0]);
     }
 
-    /// cos(π/2) beside 1, in the only row with an entry in that column, does not give the column a unit.
+    /// cos(π/2) beside 1, in the only row with an entry in that column, does not determine the scale of that
+    /// column.
     #[test]
     fn rounding_is_no_unit() {
         let rows = [vec![1.0, 6.1e-17], vec![2.0, 0.0]];

@@ -6,10 +6,10 @@ use crate::numbers::rounding::Rounding;
 
 /// A number with derivatives along several directions; `f64` has none.
 pub(crate) trait Number: DualNum<Primitive = f64> + Copy {
-    /// The same with one more direction.
+    /// The same kind of number with one more direction.
     type Rate: Number;
 
-    /// This number, changing at a rate; `None` beyond the deepest nesting.
+    /// This number, made to change at a rate; `None` beyond the deepest nesting.
     fn changing(self, rate: Self) -> Option<Self::Rate>;
 
     /// The rate at which a number changes.
@@ -24,10 +24,11 @@ pub(crate) trait Number: DualNum<Primitive = f64> + Copy {
     /// Whether the value and all derivatives vanish.
     fn vanishes(self) -> bool;
 
-    /// x^c for a constant exponent, by products if it is a small integer, so that no power of 0 is 0/0.
+    /// x^c for a constant exponent, computed by products if it is a small integer, so that no power of 0
+    /// becomes 0/0.
     fn power(self, exponent: f64) -> Self;
 
-    /// Every part moved by one unit in the last place, up or down.
+    /// This number with every part moved by one unit in the last place, up or down.
     fn rounded(self, rounding: &Rounding) -> Self;
 
     /// A constant.
@@ -36,7 +37,7 @@ pub(crate) trait Number: DualNum<Primitive = f64> + Copy {
     }
 }
 
-/// Exponents up to which powers are products.
+/// The largest exponent for which a power is computed as a product.
 const LONGEST_PRODUCT: f64 = 64.0;
 
 fn integer_power<T: Number>(base: T, exponent: f64) -> T {
@@ -84,7 +85,7 @@ impl Number for f64 {
     }
 }
 
-/// Another level of nesting. `next` has one more direction; the deepest has none.
+/// Implements a number at another level of nesting. `next` has one more direction; the deepest has none.
 macro_rules! level {
     ($number:ty, $next:ty, $changing:expr, $rate:expr) => {
         impl Number for $number {

@@ -10,23 +10,23 @@ pub(crate) fn within(value: f64, bound: f64) -> bool {
 /// Half a unit in the last place of 1.
 pub(crate) const UNIT: f64 = f64::EPSILON / 2.0;
 
-/// Moves numbers by one part in 2⁵³, up or down at random; or leaves them unchanged.
+/// Moves numbers by one part in 2⁵³, up or down at random; alternatively leaves them unchanged.
 ///
 /// The results of a computation repeated in this way scatter as far as its rounding errors reach: widely
 /// after cancellation, and after division by small numbers.
 #[derive(Debug)]
 pub(crate) struct Rounding {
-    /// State of the generator; `None` if numbers stay unchanged.
+    /// The state of the generator; `None` if numbers stay unchanged.
     state: Cell<Option<u64>>,
 }
 
 impl Rounding {
-    /// Leaves numbers unchanged.
+    /// The rounding that leaves numbers unchanged.
     pub(crate) fn none() -> Rounding {
         Rounding { state: Cell::new(None) }
     }
 
-    /// Moves numbers, differently for each seed.
+    /// The rounding that moves numbers, differently for each seed.
     pub(crate) fn made(seed: u64) -> Rounding {
         Rounding { state: Cell::new(Some(seed)) }
     }
@@ -36,7 +36,7 @@ impl Rounding {
         self.state.get().is_none()
     }
 
-    /// The number, moved.
+    /// The number, moved or unchanged.
     pub(crate) fn of(&self, value: f64) -> f64 {
         let Some(state) = self.state.get() else { return value };
         let next = step(state);
@@ -45,7 +45,7 @@ impl Rounding {
         value * if up { 1.0 + f64::EPSILON } else { 1.0 - f64::EPSILON }
     }
 
-    /// The result of a computation in which numbers stay unchanged.
+    /// The result of a computation during which numbers stay unchanged.
     pub(crate) fn suspended<T>(&self, compute: impl FnOnce() -> T) -> T {
         let state = self.state.take();
         let result = compute();

@@ -4,11 +4,11 @@
 use crate::derivation::place::Place;
 use crate::numbers::rounding::Random;
 
-/// A start value below this is the unit of its quantity; for a larger one the unit is 1.
+/// A start value below this serves as the unit of its quantity; for a larger one the unit is 1.
 const SMALL: f64 = 1e-3;
 
-/// A unit of each coordinate, velocity and first-order state: 1 unless the start has small values, such as lengths of
-/// 1e-9 m, at whose distance 1 functions of them overflow or vanish.
+/// A unit for each coordinate, velocity and first-order state: 1, unless the start has small values, such as lengths
+/// of 1e-9 m; functions of these overflow or vanish at a distance of 1.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Units {
     pub(crate) x: Vec<f64>,
@@ -17,20 +17,21 @@ pub(crate) struct Units {
 }
 
 impl Units {
-    /// The units of a start, with ẋ_i = b_is w_s + … and a list of b_is for each s; without lists if w = ẋ.
+    /// The units for a start. `frame` has a list of the b_is of ẋ_i = b_is w_s + … for each s; it is absent
+    /// if w = ẋ.
     pub(crate) fn of(start: &Place, frame: Option<&[Vec<f64>]>) -> Units {
         let x = units(&start.x);
         let w = frame.map_or_else(|| x.clone(), |frame| velocity_units(frame, &start.x, &x));
         Units { x, w, z: units(&start.z) }
     }
 
-    /// Random coordinates at this distance from those of a place.
+    /// Random coordinates at about this distance from those of a place, in their units.
     pub(crate) fn displaced(&self, from: &Place, scale: f64, random: &mut Random) -> Vec<f64> {
         let moved = |(x, unit): (&f64, &f64)| x + scale * (unit + x.abs()) * random.signed();
         from.x.iter().zip(&self.x).map(moved).collect()
     }
 
-    /// Random velocities at this distance from those of a place.
+    /// Random velocities at about this distance from those of a place, in their units.
     pub(crate) fn faster(&self, from: &Place, scale: f64, random: &mut Random) -> Vec<f64> {
         let fastest = from.w.iter().fold(0.0f64, |fastest, w| fastest.max(w.abs()));
         let moved = |(w, unit): (&f64, &f64)| w + scale * (unit + fastest) * random.signed();
@@ -38,15 +39,16 @@ impl Units {
     }
 }
 
-/// 1, or a small value itself; 0 gives no information, and takes the largest unit of the others.
+/// The units for some values: 1, or a small value itself; a value of 0 gives no information and takes the
+/// largest unit of the others.
 fn units(values: &[f64]) -> Vec<f64> {
     let known = |value: f64| (value != 0.0).then_some(if value < SMALL { value } else { 1.0 });
     let largest = values.iter().filter_map(|value| known(value.abs())).reduce(f64::max).unwrap_or(1.0);
     values.iter().map(|value| known(value.abs()).unwrap_or(largest)).collect()
 }
 
-/// Units of velocities, which move each coordinate by no more than its unit and its own value in a unit of time;
-/// 1 if the coordinates have no smaller unit.
+/// The units of velocities, which move each coordinate in a unit of time by no more than the sum of its unit and
+/// its own value; 1 if the coordinates have no smaller unit.
 fn velocity_units(frame: &[Vec<f64>], x: &[f64], of_x: &[f64]) -> Vec<f64> {
     if of_x.iter().all(|&unit| unit >= 1.0) {
         return vec![1.0; frame.len()];

@@ -10,14 +10,14 @@ use crate::text::term::Term;
 pub(crate) struct Body {
     pub(crate) mass: Term,
     pub(crate) position: Vec<Term>,
-    /// The matrix, row by row.
+    /// The matrix of inertia, row by row.
     pub(crate) inertia: Option<Vec<Term>>,
     pub(crate) turning: Option<Turning>,
     pub(crate) force: Vec<Term>,
     /// μ_i for each component of the force; if it is not 0, the component has the force function μ_i F_i r_i,
-    /// a term of L.
+    /// which is a term of L.
     pub(crate) force_functions: Vec<f64>,
-    /// Whether components may have force functions: those of a force on a body with a joint have none.
+    /// Whether components of the force may have force functions; on a body with a joint they have none.
     pub(crate) may_have_force_functions: bool,
     pub(crate) torque: Vec<Term>,
 }
@@ -25,13 +25,13 @@ pub(crate) struct Body {
 /// The rotation of a body.
 #[derive(Clone, Debug)]
 pub(crate) enum Turning {
-    /// The matrix from body to space, row by row.
+    /// The matrix from the axes of the body to those of space, row by row.
     Rotation(Vec<Term>),
     /// The components of the angular velocity.
     AngularVelocity(Vec<Term>),
 }
 
-/// The 9 entries of a matrix of inertia; [`Inertia::Full`] has Ixx, Iyy, Izz, Ixy, Iyz, Ixz.
+/// The 9 entries of a matrix of inertia; [`Inertia::Full`] lists Ixx, Iyy, Izz, Ixy, Iyz, Ixz.
 pub(crate) fn matrix(
     inertia: &Inertia,
     term: impl Fn(&Expression) -> Result<Term, Unable>,

@@ -1,6 +1,6 @@
-//! Which velocities occur together in a term of the energy.
+//! The pairs of velocities that occur together in a term of the energy.
 //!
-//! If no term contains both w_r and w_s, ∂²L/∂w_r∂w_s vanishes, and need not be computed: n uncoupled
+//! If no term contains both w_r and w_s, ∂²L/∂w_r∂w_s vanishes and need not be computed: n uncoupled
 //! coordinates cost n evaluations of L instead of n². An error here would remove an entry of the mass matrix,
 //! and the derivations would disagree.
 
@@ -22,12 +22,12 @@ impl Couplings {
         Couplings(reader.coupled)
     }
 
-    /// Whether a term contains both.
+    /// Whether some term contains both velocities.
     pub(crate) fn has(&self, r: usize, s: usize) -> bool {
         self.0[r].has(s)
     }
 
-    /// The number of pairs r ≤ s.
+    /// The number of coupled pairs r ≤ s.
     pub(crate) fn pairs(&self) -> usize {
         let (both, alone) =
             self.0.iter().enumerate().fold((0, 0), |(both, alone), (r, with)| {
@@ -79,7 +79,7 @@ impl Contents {
     }
 }
 
-/// The contents of the names of a text, as far as they are known.
+/// A reader of terms, with the contents of the names of a text as far as they are known.
 struct Reader<'a> {
     text: &'a Text,
     n: usize,
@@ -125,7 +125,7 @@ impl<'a> Reader<'a> {
         Contents { coordinates, velocities, states: false }
     }
 
-    /// Unknown contents may be anything.
+    /// Adds contents to `all`; if they are unknown, they may be anything.
     fn add_known(&self, known: Option<&Contents>, all: &mut Contents) {
         if let Some(known) = known {
             return all.join(known);
@@ -135,7 +135,7 @@ impl<'a> Reader<'a> {
         all.states = true;
     }
 
-    /// A velocity is one of w, unless it is given `by_terms`.
+    /// Adds a velocity to `all`: it is one of w, or, if it is given `by_terms`, stands for their contents.
     fn add_velocity(&self, i: usize, by_terms: bool, all: &mut Contents) {
         match by_terms {
             true => self.add_known(self.moving[i].as_ref(), all),
@@ -181,7 +181,7 @@ impl<'a> Reader<'a> {
         all
     }
 
-    /// Couples the velocities of each summand of these terms.
+    /// Couples the velocities that occur together in a summand of these terms.
     fn summands(&mut self, mut terms: Vec<&'a Term>) {
         let text = self.text;
         let mut seen = vec![false; text.definitions.len()];

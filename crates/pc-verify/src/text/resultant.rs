@@ -31,18 +31,18 @@ impl Resultant {
     }
 }
 
-/// All components at a place.
+/// All components of the reactions on bodies at a place.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Resultants {
-    /// The first row of the force on each body, and of the torque.
+    /// The first row of the force on each body, and the first row of the torque.
     pub(crate) rows: Vec<[usize; 2]>,
     pub(crate) kept: Vec<usize>,
-    /// For each row the value for each independent constraint.
+    /// For each row, the value due to each independent constraint.
     pub(crate) values: Vec<Vec<Sized>>,
 }
 
 impl Resultants {
-    /// A component; zero if the constraint follows from others, or the body has no such component.
+    /// A component; zero if the constraint is dependent on others, or if the body has no such component.
     pub(crate) fn get(&self, resultant: Resultant) -> Sized {
         let place = self.kept.iter().position(|&kept| kept == resultant.constraint);
         let row = self.rows[resultant.body][usize::from(resultant.turns)] + resultant.axis;

@@ -21,13 +21,13 @@ pub(crate) enum Term {
     Definition(usize),
     /// λ_α
     Reaction(usize),
-    /// A reaction on a body.
+    /// A component of a reaction on a body.
     Resultant(Resultant),
-    /// The total time derivative.
+    /// The total time derivative of a term.
     Rate(Box<Term>),
-    /// Terms; those with `true` are subtracted.
+    /// The terms of a sum; those marked `true` are subtracted.
     Sum(Vec<(bool, Term)>),
-    /// Factors; those with `true` are divided by.
+    /// The factors of a product; those marked `true` are divisors.
     Product(Vec<(bool, Term)>),
     Negative(Box<Term>),
     Power(Box<Term>, Box<Term>),
@@ -81,7 +81,7 @@ const FUNCTIONS: [(&str, Function); 19] = [
 ];
 
 impl Term {
-    /// The number of terms in it, itself included.
+    /// The number of terms it contains, including itself.
     pub(crate) fn size(&self) -> usize {
         1 + match self {
             Term::Sum(parts) | Term::Product(parts) => parts.iter().map(|(_, part)| part.size()).sum(),
@@ -104,7 +104,7 @@ impl Term {
         }
     }
 
-    /// Whether it contains velocities; `definitions` says this of the definitions before it, and `None` is
+    /// Whether it contains velocities; `definitions` says this for the definitions before it, and `None` is
     /// returned if it uses a later one.
     pub(crate) fn has_velocities(&self, definitions: &[bool]) -> Option<bool> {
         let any = |terms: &mut dyn Iterator<Item = &Term>| -> Option<bool> {
@@ -129,23 +129,23 @@ impl Term {
     }
 }
 
-/// The meanings of names.
+/// The names of a model, whose positions here are the indices used in terms.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Names {
     pub(crate) coordinates: Vec<String>,
     pub(crate) quasi_velocities: Vec<String>,
-    /// Parameters, then inputs.
+    /// The parameters, followed by the inputs.
     pub(crate) parameters: Vec<String>,
     pub(crate) states: Vec<String>,
     pub(crate) definitions: Vec<String>,
     pub(crate) constraints: Vec<String>,
     pub(crate) bodies: Vec<String>,
-    /// Components of points with their meanings.
+    /// The names of components of points, with the terms they denote.
     pub(crate) points: Vec<(String, Term)>,
 }
 
 impl Names {
-    /// The tree with its names resolved.
+    /// The term that a syntax tree denotes, with its names resolved.
     pub(crate) fn resolve(&self, tree: &Ast) -> Result<Term, Unable> {
         let boxed = |tree: &Ast| self.resolve(tree).map(Box::new);
         let all = |trees: &[Ast]| trees.iter().map(|tree| self.resolve(tree)).collect::<Result<Vec<_>, _>>();
@@ -176,12 +176,12 @@ impl Names {
         })
     }
 
-    /// The coordinate of that name.
+    /// The coordinate with this name.
     pub(crate) fn coordinate(&self, name: &str) -> Result<Term, Unable> {
         place(&self.coordinates, name).map(Term::Coordinate).ok_or_else(|| unknown(name))
     }
 
-    /// The quasi-velocity of that name.
+    /// The quasi-velocity with this name.
     pub(crate) fn quasi_velocity(&self, name: &str) -> Result<Term, Unable> {
         place(&self.quasi_velocities, name).map(Term::QuasiVelocity).ok_or_else(|| unknown(name))
     }

@@ -1,4 +1,4 @@
-//! The text of a model, as terms of time, coordinates and velocities.
+//! The text of a model, as terms in time, coordinates and velocities.
 
 use std::sync::Arc;
 
@@ -16,38 +16,39 @@ use crate::text::tree::Tree;
 #[derive(Clone, Debug)]
 pub(crate) struct Text {
     pub(crate) names: Names,
-    /// Values of the parameters and inputs, at the start for tables.
+    /// The values of the parameters and inputs; of a table, its value at the start.
     pub(crate) parameters: Vec<f64>,
-    /// The tables among them, with their indices.
+    /// The tables among the inputs, with their indices.
     pub(crate) tables: Vec<(usize, Arc<Table>)>,
-    /// The numbers added to the values of tables, by their indices.
+    /// The numbers that are added to the values of tables, with the indices of these.
     pub(crate) shifts: Vec<(usize, f64)>,
-    /// ż of the first-order states.
+    /// The rates ż of the first-order states.
     pub(crate) state_rates: Vec<Term>,
     /// The acceleration of gravity.
     pub(crate) gravity: Vec<Term>,
-    /// The constant definitions of the text, those of bodies on joints, then the others of the text.
+    /// The definitions: constant ones of the text, those of bodies on joints and of points, then the others
+    /// of the text.
     pub(crate) definitions: Vec<Term>,
     pub(crate) velocities: Velocities,
     pub(crate) brackets: Option<Brackets>,
     pub(crate) constraints: Vec<Term>,
     pub(crate) kinetic: Option<Term>,
     pub(crate) potential: Option<Term>,
-    /// The Lagrangian as a whole.
+    /// The Lagrangian, if it is given as a whole.
     pub(crate) lagrangian: Option<Term>,
     pub(crate) dissipation: Option<Term>,
     pub(crate) bodies: Vec<Body>,
     pub(crate) forces: Vec<(Forced, Term)>,
     /// `[integrals]` and `[outputs]`, as far as they can be resolved.
     pub(crate) observed: Vec<(String, Term)>,
-    /// When work on the model must end.
+    /// The time at which work on the model must end.
     pub(crate) deadline: Deadline,
 }
 
 /// The velocities w of the equations, of which ẋ and η are functions.
 #[derive(Clone, Debug)]
 pub(crate) enum Velocities {
-    /// w = ẋ; any quasi-velocities are defined by ẋ: η_s = a_s(t, x, ẋ).
+    /// w = ẋ; quasi-velocities, if there are any, are defined in terms of ẋ: η_s = a_s(t, x, ẋ).
     Ordinary(Vec<Term>),
     /// w = η, with ẋ_i = u_i(t, x, η) given.
     Quasi(Vec<Term>),
@@ -60,16 +61,16 @@ pub(crate) enum Forced {
     QuasiVelocity(usize),
 }
 
-/// Brackets as given: [X_r, X_s] = Σ value X_m, 0 for time.
+/// Brackets as they are given: [X_r, X_s] = Σ value X_m, with 0 for time.
 #[derive(Clone, Debug)]
 pub(crate) enum Brackets {
     Catalogue(String),
-    /// r, s, and the right-hand side, linear in the quasi-velocities, which represent their fields.
+    /// r, s, and the right-hand side, which is linear in the quasi-velocities; these represent their fields.
     Table(Vec<(usize, usize, Term)>),
 }
 
 impl Text {
-    /// The document of a model, with the present values of its parameters.
+    /// The text of the document of a model, with the present values of its parameters.
     pub(crate) fn new(model: &Model) -> Result<Text, Unable> {
         let document = model.document();
         let named = |list: &[NamedExpression]| -> Vec<String> {
@@ -145,7 +146,7 @@ impl Text {
         })
     }
 
-    /// Whether each constraint is free of velocities, also by its definitions.
+    /// Whether each constraint is free of velocities, including those in the definitions that it uses.
     pub(crate) fn on_positions(&self) -> Result<Vec<bool>, Unable> {
         let mut moving: Vec<bool> = Vec::with_capacity(self.definitions.len());
         for term in &self.definitions {
@@ -158,7 +159,7 @@ impl Text {
         Ok(self.constraints.iter().map(|term| term.has_velocities(&moving) == Some(false)).collect())
     }
 
-    /// The number of terms in the energy and the constraints.
+    /// The number of terms in the energy, the constraints and all that these use.
     pub(crate) fn terms(&self) -> usize {
         let velocities = match &self.velocities {
             Velocities::Ordinary(terms) | Velocities::Quasi(terms) => terms,
@@ -175,7 +176,7 @@ impl Text {
         all.map(Term::size).sum::<usize>() + self.bodies.iter().map(of_body).sum::<usize>()
     }
 
-    /// Whether there is energy in addition to that of bodies.
+    /// Whether the model has energy in addition to that of bodies.
     pub(crate) fn has_own_energy(&self) -> bool {
         self.lagrangian.is_some() || self.kinetic.is_some()
     }

@@ -1,8 +1,8 @@
-//! Bodies on joints, as terms: their places, their rotations, and the rates of the joints' coordinates.
+//! Bodies on joints, as terms: their positions, their rotations, and the rates of the joints' coordinates.
 //!
-//! A body has thirty definitions: the constant rotation of its joint, the rotation by the joint,
-//! its own, and its place; a point has three. They follow the constant definitions of the text, which joints
-//! may contain, and precede the others, which may contain points.
+//! A body has thirty definitions: the constant rotation of its joint, the rotation by the joint, its own
+//! rotation, and its position; a point has three. They follow the constant definitions of the text, which
+//! joints may contain, and precede the others, which may contain points.
 
 use std::collections::HashSet;
 
@@ -20,10 +20,10 @@ const OF_BODY: usize = 9 + 9 + 9 + 3;
 /// The number of definitions of a point.
 const OF_POINT: usize = 3;
 
-/// The order of the definitions of bodies and points.
+/// The bodies on joints of a document, with the order of the definitions.
 pub(crate) struct Tree<'a> {
     document: &'a Document,
-    /// The definitions of the text, the constant ones first, and the number of these.
+    /// The definitions of the text, constant ones first, and the number of constant ones.
     written: Vec<&'a NamedExpression>,
     constant: usize,
     /// The bodies, parents first.
@@ -59,7 +59,7 @@ impl<'a> Tree<'a> {
         Tree { document, written, constant, order }
     }
 
-    /// The names of all definitions, those of bodies and points for error messages only.
+    /// The names of all definitions; those of bodies and points serve only for error messages.
     pub(crate) fn names(&self) -> Vec<String> {
         let bodies = self.order.iter().map(|&body| &self.document.tree[body].name.text);
         let bodies = bodies.flat_map(|name| std::iter::repeat_n(name, OF_BODY));
@@ -76,7 +76,7 @@ impl<'a> Tree<'a> {
         self.constant + OF_BODY * self.order.iter().position(|&known| known == body).unwrap_or(0)
     }
 
-    /// The rotation of a body, row by row, and its place.
+    /// The rotation of a body, row by row, and its position.
     fn placement(&self, body: Option<usize>) -> (Vec<Term>, Vec<Term>) {
         let Some(body) = body else {
             return (unit(), vec![Term::Number(0.0); 3]);
@@ -132,7 +132,7 @@ impl<'a> Tree<'a> {
         Ok(all)
     }
 
-    /// The rates of the coordinates of joints, by their names.
+    /// The rates of the coordinates of joints, with the names of these.
     pub(crate) fn rates(&self, names: &Names) -> Result<Vec<(String, Term)>, Unable> {
         let mut all = Vec::new();
         for body in &self.document.tree {
@@ -202,7 +202,7 @@ fn place_of(document: &Document, body: Option<&str>) -> Option<usize> {
     body.and_then(|name| document.tree.iter().position(|body| body.name.text == name))
 }
 
-/// The movement of a joint, in its own axes: first the slide, then the rotation.
+/// The movement that a joint allows, in its own axes: first the slide, then the rotation.
 struct Motion {
     slide: Option<Vec<Term>>,
     turn: Option<Vec<Term>>,
@@ -255,7 +255,7 @@ fn vector(list: Option<&[Expression; 3]>, names: &Names) -> Result<Vec<Term>, Un
 }
 
 /// The constant rotation of a joint. Entries that are 0 or ±1 up to rounding, such as cos(π/2), are made
-/// exact: a loop must not restrict the directions that parallel axes leave free.
+/// exact, so that a loop does not restrict the directions that parallel axes leave free.
 fn constant_rotation(joint: &Joint, names: &Names) -> Result<Vec<Term>, Unable> {
     let entries = match &joint.rotation {
         None => unit(),
@@ -278,7 +278,7 @@ fn constant_rotation(joint: &Joint, names: &Names) -> Result<Vec<Term>, Unable> 
     Ok(entries.into_iter().map(exact).collect())
 }
 
-/// Some roundings of a number near 1.
+/// Some rounding errors of a number near 1.
 const ROUNDING: f64 = 1e-15;
 
 fn times<const N: usize>(factors: [&Term; N]) -> Term {
@@ -319,7 +319,7 @@ fn product(a: &[Term], b: &[Term]) -> Vec<Term> {
     (0..9).map(|ij| scalar(&a[3 * (ij / 3)..3 * (ij / 3) + 3], &column(ij % 3))).collect()
 }
 
-/// The matrix S of S v = u × v.
+/// The matrix S for which S v = u × v.
 fn skew(u: &[Term]) -> Vec<Term> {
     let (zero, minus) = (Term::Number(0.0), |i: usize| Term::Negative(Box::new(u[i].clone())));
     vec![
@@ -335,7 +335,7 @@ fn skew(u: &[Term]) -> Vec<Term> {
     ]
 }
 
-/// Rodrigues' 1 + sin φ S + (1 − cos φ) S² for the S of a unit vector.
+/// Rodrigues' rotation matrix 1 + sin φ S + (1 − cos φ) S², with the S of a unit vector.
 fn about(axis: &[Term], angle: &Term) -> Vec<Term> {
     let (s, one) = (skew(axis), Term::Number(1.0));
     let square = product(&s, &s);
@@ -346,9 +346,9 @@ fn about(axis: &[Term], angle: &Term) -> Vec<Term> {
     unit().into_iter().zip(s).zip(square).map(entry).collect()
 }
 
-/// The sine and cosine of an angle, exact for a number that is a multiple of π/2 up to rounding: the cosine
-/// of the double next to π/2 could be the only term left when others vanish, and would be taken for their
-/// size.
+/// The sine and cosine of an angle. They are exact for a number that is a multiple of π/2 up to rounding:
+/// otherwise the cosine of the double nearest to π/2 could be the only term left when others vanish, and
+/// would be mistaken for their size.
 fn sine_and_cosine(angle: &Term) -> [Term; 2] {
     let quarter = std::f64::consts::FRAC_PI_2;
     if let Some(value) = number(angle) {
@@ -366,7 +366,7 @@ fn sine_and_cosine(angle: &Term) -> [Term; 2] {
     [Function::Sin, Function::Cos].map(|function| Term::Call(function, vec![angle.clone()]))
 }
 
-/// The value of a term that consists of sums and products of numbers, of sines and cosines.
+/// The value of a term that consists of numbers, their sums and products, sines and cosines.
 fn number(term: &Term) -> Option<f64> {
     match term {
         Term::Number(value) => Some(*value),
@@ -385,8 +385,8 @@ fn number(term: &Term) -> Option<f64> {
     }
 }
 
-/// |q|² + 2 q_0 S + 2 S² for the S of the vector of a quaternion: |q|² times a rotation, so that energies
-/// agree even if a motion is off |q| = 1 by its tolerance.
+/// |q|² + 2 q_0 S + 2 S² with the S of the vector of a quaternion. This is |q|² times a rotation, so that
+/// energies agree even if a motion deviates from |q| = 1 by its tolerance.
 fn by_quaternion(q: &[Term]) -> Vec<Term> {
     let (s, two) = (skew(&q[1..]), Term::Number(2.0));
     let square = product(&s, &s);
@@ -397,7 +397,7 @@ fn by_quaternion(q: &[Term]) -> Vec<Term> {
     unit().into_iter().zip(s).zip(square).map(entry).collect()
 }
 
-/// Half the product of the quaternion with (0, ω).
+/// The rates of a quaternion: half its product with (0, ω).
 fn quaternion_rates(q: &[Term], omega: &[Term]) -> Vec<Term> {
     let half = Term::Number(0.5);
     let scalar_part = times([&Term::Number(-0.5), &scalar(&q[1..], omega)]);
