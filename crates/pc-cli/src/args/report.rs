@@ -10,7 +10,7 @@ use crate::args::forms::run_form;
 use crate::args::options;
 use crate::args::options::{IntegrationArguments, ModelArguments};
 
-/// The motion on a page.
+/// How the motion on a page is computed.
 #[derive(Clone, Debug, Args)]
 pub struct ShownArguments {
     /// The model.
