@@ -9,8 +9,8 @@ use pc_run::motion::checkpoints::CheckpointFiles;
 /// Arguments of `pc run` for checkpoints.
 #[derive(Clone, Debug, Default, Args)]
 pub struct CheckpointArguments {
-    /// Save checkpoints in FILE, for --resume. The integrator restarts at each of them, which changes the motion within its
-    /// tolerance
+    /// Save the latest checkpoint in FILE, for --resume. The integrator restarts at each checkpoint, which changes the motion
+    /// within its tolerance
     #[arg(long, value_name = "FILE")]
     pub checkpoint: Option<PathBuf>,
     /// Internal steps from one checkpoint to the next [default: 1000, or as in the FILE of --resume]

@@ -42,7 +42,7 @@ pub struct Arguments {
     pub command: Option<Command>,
 }
 
-/// What to do.
+/// The commands of `pc`.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Command {
     /// Write a model to start from, which runs and explains the format

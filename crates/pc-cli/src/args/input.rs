@@ -92,7 +92,7 @@ fn document(name: &str) -> Result<Document, CliError> {
     Ok(Document::from_bytes(name, &bytes)?)
 }
 
-/// The error for an unknown model, with the model whose name is nearest.
+/// The error for an unknown model, which suggests the model whose name is nearest.
 pub(crate) fn no_such_model(name: &str) -> CliError {
     let stem = Path::new(name).file_stem().and_then(|stem| stem.to_str()).unwrap_or(name);
     let nearest = nearest(stem, Builtin::all().map(|model| model.name));

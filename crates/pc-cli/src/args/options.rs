@@ -38,7 +38,7 @@ pub struct ModelArguments {
     pub limit_time: Option<Duration>,
 }
 
-/// The velocities of the equations.
+/// The options that choose the velocities of the equations.
 #[derive(Clone, Debug, Default, Args)]
 pub struct VelocityArguments {
     /// With --form hamel: quasi-velocities as linear forms in the velocities x' or the quasi-velocities of the model; where
@@ -147,7 +147,7 @@ pub struct TheoryArguments {
     /// Look for integrals that are polynomials of up to this degree in the velocities
     #[arg(long, value_name = "N", default_value = "2", value_parser = clap::value_parser!(u32).range(1..=6))]
     pub degree: u32,
-    /// Functions of the coordinates by which their coefficients may be multiplied, such as "1/r" (repeatable);
+    /// Functions of the coordinates by which the coefficients of integrals may be multiplied, such as "1/r" (repeatable);
     /// polynomials in the coordinates, or in their sines and cosines, are always tried
     #[arg(long, value_name = "EXPRESSIONS", num_args = 1..)]
     pub functions: Vec<String>,
@@ -159,7 +159,7 @@ pub struct TheoryArguments {
     pub verify: VerifyArguments,
 }
 
-/// The search for events.
+/// The options of the search for events.
 #[derive(Clone, Debug, Default, Args)]
 pub struct EventArguments {
     /// Split each step into N equal parts to search for events whose functions are known only as numbers (through

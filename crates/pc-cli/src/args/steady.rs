@@ -6,7 +6,7 @@ use pc_run::linear::state::{At, Cyclic, StateChoice};
 
 use crate::args::forms::by_word;
 
-/// The state, and which components of it to keep.
+/// The options that choose the state, and which components of it to keep.
 #[derive(Clone, Debug, Default, Args)]
 pub struct StateArguments {
     /// Linearize at this state: the equilibrium or steady motion near the start (steady), an equilibrium at rest near it (rest),

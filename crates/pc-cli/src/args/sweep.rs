@@ -85,8 +85,8 @@ pub struct SweepArguments {
     /// Compute only the members I, I + N, … and keep them in FILE.shard-I-of-N; `pc merge` makes one table of all N shards
     #[arg(long, value_name = "I/N", value_parser = Shard::parse, conflicts_with = "plot")]
     pub shard: Option<Shard>,
-    /// Draw the last row of each member into FILE.svg, FILE.png or FILE.pdf: curves over one varied value, a colour for each
-    /// pair of two, histograms with quantiles of randomly drawn members; with --rows, curves over time
+    /// Draw the last row of each member into FILE.svg, FILE.png or FILE.pdf: curves over one varied value, colours over two of
+    /// them, histograms with quantiles of randomly drawn members; with --rows, curves over time
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
     /// With --plot: draw these columns, separated by commas
