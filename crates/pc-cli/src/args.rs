@@ -1,9 +1,10 @@
 //! The command line, and the model it names.
 //!
-//! In goes a command line, out come the arguments of a command, and a model. Read `options` first, the options of the
-//! commands with the `forms` of equations, with those of a `sweep`, of a page (`report`), of linearizations (`linear`, at the state that `steady` chooses), of a comparison
-//! (`compare`) and of measurements (`bench`), those of what is `drawn`, those for a `checkpoint`, `models` and other `tools` around
-//! models; `command_line` is all of them with their `examples`, and `input` turns MODEL into a model and its equations.
+//! In goes a command line, out come the arguments of a command, and a model. Read `options` first, the options of the commands,
+//! and the `forms` of equations; then the options of a `sweep`, of a page (`report`), of linearizations (`linear`, at the state
+//! that `steady` chooses), of a comparison (`compare`) and of measurements (`bench`), those that say what is `drawn`, those for
+//! a `checkpoint`, for `models` and for other `tools` around models; `command_line` has all of them with their `examples`, and
+//! `input` turns MODEL into a model and its equations.
 
 pub mod bench;
 pub mod checkpoint;

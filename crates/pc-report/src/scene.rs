@@ -202,7 +202,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn many_shapes_have_fewer_frames() {
+    fn many_shapes_have_fewer_stills() {
         assert_eq!(shown(3, 10), [0, 1, 2]);
         let few = shown(601, 148);
         assert!(few.len() * 148 <= MOST_NUMBERS + 148 && few.first() == Some(&0) && few.last() == Some(&600));

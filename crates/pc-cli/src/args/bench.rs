@@ -13,7 +13,7 @@ pub struct BenchArguments {
     /// The model.
     #[command(flatten)]
     pub model: ModelArguments,
-    /// About how many seconds to spend, half of them on derivations; each derivation is made at least once
+    /// Approximate number of seconds to spend, half of them on derivations; each derivation is made at least once
     #[arg(long, value_name = "SECONDS", value_parser = options::seconds, default_value = "2")]
     pub seconds: Duration,
     /// How to print

@@ -9,14 +9,15 @@ use pc_run::motion::checkpoints::CheckpointFiles;
 /// Arguments of `pc run` for checkpoints.
 #[derive(Clone, Debug, Default, Args)]
 pub struct CheckpointArguments {
-    /// Keep a checkpoint in FILE, for --resume. The integrator restarts at each, which changes the motion within its tolerance
+    /// Save the latest checkpoint in FILE, for --resume. The integrator restarts at each checkpoint, which changes the motion
+    /// within its tolerance
     #[arg(long, value_name = "FILE")]
     pub checkpoint: Option<PathBuf>,
     /// Internal steps from one checkpoint to the next [default: 1000, or as in the FILE of --resume]
     #[arg(long, value_name = "N")]
     pub every: Option<NonZeroU64>,
     /// Continue from the checkpoint in FILE, with the same model and options; the result is that of a run that was
-    /// never interrupted, to the last bit. Further checkpoints are kept there unless --checkpoint names another file
+    /// never interrupted, to the last bit. Further checkpoints are saved there unless --checkpoint names another file
     #[arg(long, value_name = "FILE")]
     pub resume: Option<PathBuf>,
 }

@@ -34,7 +34,7 @@ pub struct Arguments {
     /// Print the version
     #[arg(short = 'V', long)]
     pub version: bool,
-    /// With --version: print the features built in, the target system, and what this processor offers
+    /// With --version: print the features built in, the target system, and what this processor supports
     #[arg(long, requires = "version")]
     pub verbose: bool,
     /// The command; without one, only the version can be printed.
@@ -42,7 +42,7 @@ pub struct Arguments {
     pub command: Option<Command>,
 }
 
-/// What to do.
+/// The commands of `pc`.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Command {
     /// Write a model to start from, which runs and explains the format
@@ -68,7 +68,7 @@ pub enum Command {
     Report(Box<ReportArguments>),
     /// Write a page that animates the motion
     Animate(Box<AnimateArguments>),
-    /// Integrate, linearize or check over parameters and starts, on all cores; finished members survive interruptions
+    /// Integrate, linearize or check over parameters and starts, on all cores; finished members are kept after an interruption
     Sweep(Box<SweepArguments>),
     /// Merge the shards of a sweep into one table
     Merge(MergeArguments),

@@ -24,7 +24,7 @@ pub struct CompareArguments {
     /// Form of the equations: one for both, or one for A and one for B [default: that of each file, or poincare]
     #[arg(long, value_name = "FORM[,FORM]", value_delimiter = ',', value_parser = run_form)]
     pub form: Vec<Variables>,
-    /// Give a parameter, or the start of a coordinate, velocity or first-order state, another value in each model that has it
+    /// Set a parameter, or the start of a coordinate, velocity or first-order state, to another value in each model that has it
     /// (repeatable)
     #[arg(long, value_name = "NAME=VALUE", value_parser = options::setting)]
     pub set: Vec<Setting>,
@@ -37,7 +37,7 @@ pub struct CompareArguments {
     /// Tolerances and method.
     #[command(flatten)]
     pub integration: IntegrationArguments,
-    /// Allowed difference, as a fraction of the largest value of its column
+    /// Allowed difference, as a fraction of the largest value in its column
     #[arg(long, value_name = "P", default_value = "1e-6", allow_hyphen_values = true, value_parser = options::not_negative)]
     pub tolerance: f64,
     /// Difference allowed in addition, whatever the size of the values
@@ -62,7 +62,7 @@ pub struct CompareArguments {
 }
 
 impl CompareArguments {
-    /// The model of this name, with the parameters and start of the file.
+    /// The arguments for the model of this name, with the parameters and start of the file.
     pub fn model(&self, name: &str) -> ModelArguments {
         ModelArguments {
             model: name.to_owned(),
@@ -74,7 +74,7 @@ impl CompareArguments {
         }
     }
 
-    /// The options for A or, with 1, for B.
+    /// The options for A if `which` is 0, for B if it is 1.
     pub(crate) fn wishes(&self, which: usize, t_end: Option<f64>) -> Wishes {
         Wishes {
             form: self.form.get(which).or(self.form.first()).copied(),

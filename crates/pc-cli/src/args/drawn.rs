@@ -6,12 +6,12 @@ use pc_report::picture::Wanted;
 /// What is drawn of a motion.
 #[derive(Clone, Debug, Default, Args)]
 pub struct DrawnArguments {
-    /// With --plot: draw these columns over time, separated by commas, instead of all; drift(NAME) is the relative drift of NAME,
-    /// with --estimate error(NAME) its error
+    /// With --plot: draw these columns over time, separated by commas, instead of all; drift(NAME) is the relative drift of
+    /// NAME and, with --estimate, error(NAME) its error
     #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "plot")]
     pub columns: Vec<String>,
-    /// With --plot: draw column Y over column X, a path or a phase portrait; components of a vector, such as x and y, to the
-    /// same scale (repeatable)
+    /// With --plot: draw column Y over column X, as a path or a phase portrait; components of a vector, such as x and y, have
+    /// the same scale (repeatable)
     #[arg(long, value_name = "X,Y", value_parser = pair, requires = "plot")]
     pub xy: Vec<(String, String)>,
     /// With --plot: wrap these angles, separated by commas, to the range from −π to π
@@ -20,7 +20,7 @@ pub struct DrawnArguments {
 }
 
 impl DrawnArguments {
-    /// The same for `pc_report`.
+    /// What is drawn, in the form that `pc_report` takes.
     pub fn wanted(&self) -> Wanted {
         let trimmed = |names: &[String]| names.iter().map(|name| name.trim().to_owned()).collect();
         Wanted { columns: trimmed(&self.columns), pairs: self.xy.clone(), wrapped: trimmed(&self.wrap) }

@@ -13,19 +13,19 @@ pub(super) fn form(text: &str) -> Result<Form, String> {
     choice(text, &Form::ALL.map(|form| (form.name(), form)), &[])
 }
 
-/// The forms that are written as source: those in velocities.
+/// The form of this name, if it can be written as source: one in velocities.
 pub(super) fn emit_form(text: &str) -> Result<Variables, String> {
     let forms = Variables::ALL.into_iter().filter(|form| !form.has_momenta());
     let named: Vec<(&str, Variables)> = forms.map(|form| (form.name(), form)).collect();
     choice(text, &named, &["canonical", "lagrange", "voronets", "lie-poisson"])
 }
 
-/// The forms that are integrated.
+/// The form of this name, if it can be integrated.
 pub(super) fn run_form(text: &str) -> Result<Variables, String> {
     choice(text, &Variables::ALL.map(|form| (form.name(), form)), &["lagrange", "voronets"])
 }
 
-/// The values of these words, each with its help.
+/// A parser that turns each of these words, listed with its help, into its value.
 pub(super) fn by_word<T, const N: usize>(
     known: [(&'static str, &'static str, T); N],
 ) -> impl TypedValueParser<Value = T>
@@ -39,7 +39,7 @@ where
     })
 }
 
-/// One of these by its name; those of `later` are not supported yet.
+/// The value with this name among `known`; the names in `later` are not supported yet.
 fn choice<T: Copy>(text: &str, known: &[(&str, T)], later: &[&str]) -> Result<T, String> {
     if let Some((_, value)) = known.iter().find(|(name, _)| *name == text) {
         return Ok(*value);

@@ -12,7 +12,7 @@ use pc_model::{Assembly, Builtin, Document, Model, ModelError};
 use crate::args::options::{ModelArguments, Setting, VelocityArguments};
 use crate::error::CliError;
 
-/// The model that the command line names, with its parameters and start set.
+/// Opens the model that the command line names, and sets its parameters and start.
 ///
 /// `-` is standard input; a name that contains `/` or `.` or is that of an existing file is a file;
 /// any other name is that of a built-in model.
@@ -47,11 +47,11 @@ pub(crate) fn set(model: &mut Model, settings: &[Setting]) -> Result<(), CliErro
     Ok(())
 }
 
-/// The same with the velocities of its equations; `is_hamel` says whether these are the ones given.
+/// Opens a model as [`open`] does, and chooses the velocities of its equations; `is_hamel` says whether the form uses the
+/// definitions given.
 ///
 /// # Errors
-/// As [`open`], and [`CliError::Definitions`] where velocities are given that the form does not
-/// take.
+/// As [`open`], and [`CliError::Definitions`] if velocities are defined that the form does not use.
 pub fn open_in(
     arguments: &ModelArguments,
     velocities: &VelocityArguments,
@@ -92,7 +92,7 @@ fn document(name: &str) -> Result<Document, CliError> {
     Ok(Document::from_bytes(name, &bytes)?)
 }
 
-/// The error for an unknown model, with the model whose name is nearest.
+/// The error for an unknown model, which suggests the model whose name is nearest.
 pub(crate) fn no_such_model(name: &str) -> CliError {
     let stem = Path::new(name).file_stem().and_then(|stem| stem.to_str()).unwrap_or(name);
     let nearest = nearest(stem, Builtin::all().map(|model| model.name));
@@ -100,10 +100,10 @@ pub(crate) fn no_such_model(name: &str) -> CliError {
     CliError::NoSuchModel { name: name.to_owned(), nearest }
 }
 
-/// The system of a model and its equations in independent quasi-velocities, expressions in `graph`.
+/// The system of a model and its equations in independent quasi-velocities, as expressions in `graph`.
 ///
 /// # Errors
-/// [`ModelError`] at the place in the file that causes it.
+/// [`ModelError`], located at the entry of the file that causes it.
 pub fn derive<'g>(model: &Model, graph: &'g Graph) -> Result<(Assembly<'g>, Equations<'g>), ModelError> {
     let assembly = model.assemble(graph)?;
     let equations = assembly.equations()?;

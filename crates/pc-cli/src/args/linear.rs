@@ -69,11 +69,11 @@ pub struct EquilibriaArguments {
     /// The model.
     #[command(flatten)]
     pub model: ModelArguments,
-    /// Bounds of a coordinate or first-order state (repeatable) [default: a turn about the start for angles;
-    /// for others 2 (1 + |start|) on both sides of it, beyond which equilibria may still be found]
+    /// Bounds of a coordinate or first-order state (repeatable) [default: for angles, one turn about the start; for others,
+    /// 2 (1 + |start|) on both sides of it, beyond which equilibria may still be found]
     #[arg(long = "box", value_name = "NAME=FROM..TO", value_parser = bounds)]
     pub bounds: Vec<Bounds>,
-    /// Number of starts of Newton's method
+    /// Number of points from which Newton's method starts
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = starts)]
     pub starts: usize,
     /// How to print
@@ -98,7 +98,7 @@ pub struct Bounds {
     pub high: f64,
 }
 
-/// More starts take hours.
+/// The largest number of starts: more of them would take hours.
 const MOST_STARTS: usize = 1_000_000;
 
 fn starts(text: &str) -> Result<usize, String> {

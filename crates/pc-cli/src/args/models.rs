@@ -7,16 +7,16 @@ use crate::args::options::Format;
 /// Arguments of `pc models`.
 #[derive(Clone, Debug, Args)]
 pub struct ModelsArguments {
-    /// Print the text of this model, as a start for your own
+    /// Print the text of this model, as a starting point for your own
     #[arg(value_name = "NAME", conflicts_with = "algebras")]
     pub name: Option<String>,
-    /// List the Lie algebras that `[algebra]` accepts by name instead
+    /// List instead the Lie algebras that `[algebra]` accepts by name
     #[arg(long)]
     pub algebras: bool,
     /// List the models with this tag, with references; with several, those that have all of them (repeatable)
     #[arg(long, value_name = "TAG", conflicts_with_all = ["name", "algebras"])]
     pub tag: Vec<String>,
-    /// List the tags instead, each with the number of its models
+    /// List the tags instead, each with the number of models that have it
     #[arg(long, conflicts_with_all = ["name", "algebras", "tag"])]
     pub tags: bool,
     /// List all models with their references and tags

@@ -19,10 +19,11 @@ use crate::args::forms::{emit_form, form, method, run_form};
 pub struct ModelArguments {
     /// A file, `-` for standard input, or a built-in name
     pub model: String,
-    /// Give a parameter, or the start of a coordinate, velocity or first-order state, another value than in the file (repeatable)
+    /// Set a parameter, or the start of a coordinate, velocity or first-order state, to a value other than in the file
+    /// (repeatable)
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub set: Vec<Setting>,
-    /// Move the start onto the constraints, by steps of Newton's method that are the shortest in the kinetic metric
+    /// Move the start onto the constraints, by the steps of Newton's method that are shortest in the kinetic metric
     #[arg(long)]
     pub project_start: bool,
     /// With --project-start: coordinates and quasi-velocities, separated by commas, that keep their start values
@@ -37,11 +38,11 @@ pub struct ModelArguments {
     pub limit_time: Option<Duration>,
 }
 
-/// The velocities of the equations.
+/// The options that choose the velocities of the equations.
 #[derive(Clone, Debug, Default, Args)]
 pub struct VelocityArguments {
-    /// With --form hamel: quasi-velocities as linear forms in the velocities x' or the quasi-velocities of the model,
-    /// which complete them where they are too few
+    /// With --form hamel: quasi-velocities as linear forms in the velocities x' or the quasi-velocities of the model; where
+    /// they are too few, those of the model are added
     #[arg(value_name = "NAME=EXPR", value_parser = definition)]
     pub definitions: Vec<Setting>,
     /// Independent velocities of equations in which multipliers are eliminated, separated by commas: as many
@@ -51,7 +52,7 @@ pub struct VelocityArguments {
     pub independent: Vec<String>,
 }
 
-/// A number of bytes: `500M` are 500·2²⁰.
+/// Reads a number of bytes: `500M` is 500·2²⁰.
 pub(crate) fn bytes(text: &str) -> Result<u64, String> {
     let (number, unit) = match text.find(|c: char| !c.is_ascii_digit()) {
         Some(end) => text.split_at(end),
@@ -69,7 +70,7 @@ pub(crate) fn bytes(text: &str) -> Result<u64, String> {
     bytes.filter(|&bytes| bytes > 0).ok_or_else(|| "write a number of bytes, such as 500M or 8G".to_owned())
 }
 
-/// A positive number of seconds.
+/// Reads a positive number of seconds.
 pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
     let seconds = text.parse::<f64>().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
     seconds
@@ -77,10 +78,10 @@ pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
         .ok_or_else(|| "write a positive number of seconds, such as 60".to_owned())
 }
 
-/// `NAME=VALUE`, the value as written.
+/// A setting `NAME=VALUE`, with the value as written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Setting {
-    /// The parameter, or what has a start value.
+    /// The name of a parameter, or of something that has a start value.
     pub name: String,
     /// Its value as written.
     pub value: String,
@@ -108,8 +109,8 @@ pub struct DeriveArguments {
     pub velocities: VelocityArguments,
     /// Form of the equations: poincare, canonical (in momenta), lagrange (in velocities, with multipliers where there
     /// are constraints), voronets (constraints solved for velocities), reduced (without coordinates that nothing depends on:
-    /// Euler–Poincaré), lie-poisson (the same in momenta), orthonormal (in a frame that is so in the kinetic metric) or hamel (in
-    /// the quasi-velocities NAME=EXPR) [default: that of the file, or poincare]
+    /// Euler–Poincaré), lie-poisson (the same in momenta), orthonormal (in a frame that is orthonormal in the kinetic metric)
+    /// or hamel (in the quasi-velocities NAME=EXPR) [default: that of the file, or poincare]
     #[arg(long, value_name = "FORM", value_parser = form)]
     pub form: Option<Form>,
     /// How to print
@@ -118,7 +119,7 @@ pub struct DeriveArguments {
     /// Width of a line in columns; longer expressions are broken between two signs
     #[arg(long, value_name = "COLUMNS", default_value_t = 100, value_parser = clap::value_parser!(u16).range(60..))]
     pub width: u16,
-    /// In text: only the first line of each equation, without the meanings of names for long parts
+    /// In text: print only the first line of each equation, without the meanings of names for long parts
     #[arg(long)]
     pub brief: bool,
     /// Write out the definitions of the model instead of naming them
@@ -146,7 +147,7 @@ pub struct TheoryArguments {
     /// Look for integrals that are polynomials of up to this degree in the velocities
     #[arg(long, value_name = "N", default_value = "2", value_parser = clap::value_parser!(u32).range(1..=6))]
     pub degree: u32,
-    /// Functions of the coordinates by which their coefficients may be multiplied, such as "1/r" (repeatable);
+    /// Functions of the coordinates by which the coefficients of integrals may be multiplied, such as "1/r" (repeatable);
     /// polynomials in the coordinates, or in their sines and cosines, are always tried
     #[arg(long, value_name = "EXPRESSIONS", num_args = 1..)]
     pub functions: Vec<String>,
@@ -158,7 +159,7 @@ pub struct TheoryArguments {
     pub verify: VerifyArguments,
 }
 
-/// The search for events.
+/// The options of the search for events.
 #[derive(Clone, Debug, Default, Args)]
 pub struct EventArguments {
     /// Split each step into N equal parts to search for events whose functions are known only as numbers (through
@@ -166,8 +167,8 @@ pub struct EventArguments {
     /// missed [default: the file's, or 4]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub samples_per_step: Option<u32>,
-    /// Events that follow each other ever faster are an error once the time left until they accumulate is this
-    /// fraction of their first interval; 0 means never [default: the file's, or 1e-5]
+    /// Events that follow each other ever faster are an error once the time left until they accumulate is this fraction of the
+    /// first interval between them; 0 means never [default: the file's, or 1e-5]
     #[arg(long, value_name = "P", value_parser = part)]
     pub accumulation: Option<f64>,
 }
@@ -200,7 +201,7 @@ pub struct IntegrationArguments {
 /// `A`, or `NAME=A` for one component of the state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ToleranceSetting {
-    /// The component; none for all.
+    /// The name of the component; none means all components.
     pub name: Option<String>,
     /// The tolerance.
     pub value: f64,
@@ -250,19 +251,19 @@ pub struct RunArguments {
     /// Keep an integral, or energy, at its start value by projection after each step (repeatable)
     #[arg(long, value_name = "NAME")]
     pub project: Vec<String>,
-    /// More columns: the reactions of the constraints. λ_NAME belongs to the expression as it is written; models with
+    /// More columns: the reactions of the constraints. λ_NAME is the reaction for the expression as it is written; models with
     /// bodies also have forces F_NAME_BODY in space axes at the body's position and torques N_NAME_BODY in its axes,
     /// as far as virtual work determines them: a component perpendicular to every possible motion is 0 here, whatever
     /// holds the body
     #[arg(long, value_name = "OUTPUTS")]
     pub outputs: Option<Outputs>,
-    /// More columns: the derivatives ∂x/∂p of coordinates, quasi-velocities and first-order states by these parameters,
-    /// separated by commas; a start that depends on them, and events, are taken into account
+    /// More columns: the derivatives ∂x/∂p of coordinates, quasi-velocities and first-order states with respect to these
+    /// parameters, separated by commas; a start that depends on them, and events, are taken into account
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub sensitivities: Vec<String>,
-    /// More columns: error(NAME), the estimated global error of each column NAME except those of --sensitivities. It is the
-    /// distance from a companion, a second motion that is integrated more accurately, by taylor at rtol 1e-16 where possible. The
-    /// summary has the errors at the end
+    /// More columns: error(NAME), the estimated global error of each column NAME except those of --sensitivities. This is the
+    /// distance from a companion, a second motion that is integrated more accurately, by taylor at rtol 1e-16 where possible.
+    /// The summary gives the errors at the end
     #[arg(long)]
     pub estimate: bool,
     /// Do not compare the motion at its start and at its end with a second derivation
@@ -272,7 +273,7 @@ pub struct RunArguments {
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Draw the motion into FILE.svg, FILE.png or FILE.pdf: curves of similar scale share axes, with events and the drift of
-    /// integrals; the curves are drawn between the rows as well
+    /// integrals; the curves also follow the motion between the rows
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
     /// What is drawn.
@@ -309,14 +310,14 @@ pub struct EmitArguments {
     /// machine
     #[arg(long, value_name = "VERSION")]
     pub fmu: Option<FmuVersion>,
-    /// With --fmu: how it integrates by itself in Co-Simulation: dop853 (not stiff), radau5 (stiff) or rk4 (fixed steps, see --step)
-    /// [default: radau5 where the model says bdf or auto, else dop853]
+    /// With --fmu: how the FMU integrates by itself in Co-Simulation: dop853 (not stiff), radau5 (stiff) or rk4 (fixed steps,
+    /// see --step) [default: radau5 where the model says bdf or auto, else dop853]
     #[arg(long, value_name = "METHOD", requires = "fmu", conflicts_with = "lang")]
     pub solver: Option<FmuMethod>,
     /// With --solver rk4: the length of its steps
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = positive, requires = "solver", required_if_eq("solver", "rk4"))]
     pub step: Option<f64>,
-    /// With --fmu: leave out the binary; importers compile the sources
+    /// With --fmu: leave out the binary; importers then compile the sources
     #[arg(long, requires = "fmu", conflicts_with = "lang")]
     pub sources_only: bool,
     /// Velocities.
@@ -350,18 +351,18 @@ pub enum FmuVersion {
 /// How an FMU integrates by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FmuMethod {
-    /// Runge–Kutta of order 8 by Dormand and Prince.
+    /// The Runge–Kutta method of order 8 of Dormand and Prince.
     Dop853,
-    /// Runge–Kutta of order 5 by Radau, implicit.
+    /// Radau's implicit Runge–Kutta method of order 5.
     Radau5,
-    /// Runge–Kutta of order 4 with fixed steps.
+    /// The Runge–Kutta method of order 4, with fixed steps.
     Rk4,
 }
 
 /// Languages of emitted source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Lang {
-    /// C99, which is also C++: a header and a source.
+    /// C99, which is also C++: a header and a source file.
     C,
     /// Rust: one file.
     Rust,
@@ -411,7 +412,7 @@ impl From<Page> for pc_print::Page {
     }
 }
 
-/// More columns of a table.
+/// What further columns a table has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Outputs {
     /// The reactions of the constraints.
@@ -465,7 +466,7 @@ pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
     }
 }
 
-/// From 0 to less than 1.
+/// Reads a fraction from 0 to less than 1.
 fn part(text: &str) -> Result<f64, String> {
     match finite(text)? {
         value if (0.0..1.0).contains(&value) => Ok(value),

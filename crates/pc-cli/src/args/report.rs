@@ -10,7 +10,7 @@ use crate::args::forms::run_form;
 use crate::args::options;
 use crate::args::options::{IntegrationArguments, ModelArguments};
 
-/// The motion on a page.
+/// How the motion on a page is computed.
 #[derive(Clone, Debug, Args)]
 pub struct ShownArguments {
     /// The model.
@@ -19,7 +19,8 @@ pub struct ShownArguments {
     /// End time [default: the file's]
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = options::finite)]
     pub t_end: Option<f64>,
-    /// Number of points of a curve and of frames, evenly spaced, start and end included [default: the file's, but at least 601]
+    /// Number of points of each curve, and of frames, evenly spaced, start and end included [default: the file's, but at least
+    /// 601]
     #[arg(long, value_name = "N", value_parser = options::samples)]
     pub samples: Option<usize>,
     /// Tolerances and method.

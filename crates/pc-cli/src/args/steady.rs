@@ -6,7 +6,7 @@ use pc_run::linear::state::{At, Cyclic, StateChoice};
 
 use crate::args::forms::by_word;
 
-/// The state, and which components of it to keep.
+/// The options that choose the state, and which components of it to keep.
 #[derive(Clone, Debug, Default, Args)]
 pub struct StateArguments {
     /// Linearize at this state: the equilibrium or steady motion near the start (steady), an equilibrium at rest near it (rest),
@@ -16,8 +16,8 @@ pub struct StateArguments {
     /// Components of the state, separated by commas, that keep their start values while a steady state is looked for
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub hold: Vec<String>,
-    /// Cyclic coordinates: keep those that rest, or drop all [default: keep them at an equilibrium and at the start; drop them
-    /// for a steady motion and where values are varied]
+    /// Keep the cyclic coordinates that rest, or drop all cyclic coordinates [default: keep them at an equilibrium and at the
+    /// start; drop them for a steady motion and where values are varied]
     #[arg(long, value_name = "WHICH", value_parser = cyclic())]
     pub cyclic: Option<Cyclic>,
 }

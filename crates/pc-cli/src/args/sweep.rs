@@ -57,13 +57,13 @@ pub struct SweepArguments {
     /// Seed of the random numbers
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub seed: u64,
-    /// Number of threads, which does not change the result [default: one per core]
+    /// Number of threads, which does not affect the result [default: one per core]
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZeroUsize>,
     /// End time [default: the file's]
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = options::finite)]
     pub t_end: Option<f64>,
-    /// Write N rows of each member, evenly spaced, start and end included, instead of the last one and the drifts
+    /// Write N rows of each member, evenly spaced, start and end included, instead of the last row and the drifts
     #[arg(long, value_name = "N", value_parser = options::samples)]
     pub rows: Option<usize>,
     /// Tolerances and method.
@@ -82,11 +82,11 @@ pub struct SweepArguments {
     /// Write the table to FILE.csv, FILE.json, FILE.npz or FILE.parquet
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
-    /// Compute only the members I, I + N, … and keep them in FILE.shard-I-of-N; `pc merge` makes the table of all N
+    /// Compute only the members I, I + N, … and keep them in FILE.shard-I-of-N; `pc merge` makes one table of all N shards
     #[arg(long, value_name = "I/N", value_parser = Shard::parse, conflicts_with = "plot")]
     pub shard: Option<Shard>,
-    /// Draw the last row of each member into FILE.svg, FILE.png or FILE.pdf: curves over one varied value, a colour for each
-    /// pair of two, histograms with quantiles of randomly drawn members; with --rows, curves over time
+    /// Draw the last row of each member into FILE.svg, FILE.png or FILE.pdf: curves over one varied value, colours over two of
+    /// them, histograms with quantiles of randomly drawn members; with --rows, curves over time
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
     /// With --plot: draw these columns, separated by commas
@@ -112,7 +112,7 @@ pub struct MergeArguments {
     /// Write the table to FILE.csv, FILE.json, FILE.npz or FILE.parquet
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
-    /// Draw it, as `pc sweep --plot` does
+    /// Draw the table, as `pc sweep --plot` does
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
     /// With --plot: draw these columns, separated by commas
@@ -148,7 +148,7 @@ impl SweepArguments {
         first(SweepOf::Run, &of_runs).or_else(|| first(SweepOf::Linearize, &of_linearizations))
     }
 
-    /// What is varied.
+    /// What is varied, as the options say.
     pub(crate) fn variation(&self) -> Variation {
         let SweepArguments { vary, random, samples, seed, .. } = self;
         Variation { vary: vary.clone(), random: random.clone(), samples: *samples, seed: *seed }

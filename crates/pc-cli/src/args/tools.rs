@@ -14,8 +14,8 @@ pub struct NewArguments {
     /// The file to write, which must not exist yet; standard output if it is not given
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// With -o FILE: write the schema of the format beside it unless it exists, and name it in the first line, so that editors with Taplo
-    /// complete entries and mark mistakes
+    /// With -o FILE: write the schema of the format beside FILE unless it exists, and name it in the first line of FILE, so
+    /// that editors with Taplo complete entries and mark mistakes
     #[arg(long, requires = "output")]
     pub schema: bool,
 }
@@ -36,7 +36,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The text to start from.
+    /// The text of the model to start from.
     pub fn text(self) -> &'static str {
         match self {
             Kind::Coordinates => include_str!("../../starters/coordinates.toml"),

@@ -9,7 +9,7 @@ use crate::files::png::{opaque, painted};
 
 /// The number of pixels per point.
 const SCALE: f32 = 1.0;
-/// The number of frames per second.
+/// The number of stills per second.
 const RATE: f64 = 25.0;
 /// The duration of a still at this rate, in hundredths of a second.
 const DELAY: u16 = 4;
