@@ -3,9 +3,9 @@
 use std::error::Error as _;
 
 use pc_fmu::FmuError;
-use pc_mech::{Failure, MechError};
+use pc_mech::{Failure, MechError, TableError};
 use pc_model::import::UrdfError;
-use pc_model::{ModelError, UnknownIntegral, UnknownParameter, UnknownStart};
+use pc_model::{ModelError, UnknownInput, UnknownIntegral, UnknownParameter, UnknownStart};
 use pc_report::ReportError;
 use pc_run::files::error::FileError;
 use pc_run::sweep::error::SweepError;
@@ -24,6 +24,10 @@ pub(crate) enum Error {
     Model(#[from] ModelError),
     #[error(transparent)]
     Parameter(#[from] UnknownParameter),
+    #[error(transparent)]
+    InputName(#[from] UnknownInput),
+    #[error("the input `{name}`: {error}")]
+    Table { name: String, error: TableError },
     #[error(transparent)]
     Start(#[from] UnknownStart),
     #[error(transparent)]
@@ -133,7 +137,7 @@ impl From<Error> for PyErr {
                 Some(error) => of_model(py, error),
                 None => raised(py, "ChetaevError", chain(report)),
             },
-            Error::Parameter(_) | Error::Start(_) | Error::Integral(_) => {
+            Error::Parameter(_) | Error::InputName(_) | Error::Start(_) | Error::Integral(_) => {
                 raised(py, "UnknownNameError", error.to_string())
             }
             Error::Verify(VerifyError::Disagreement(_)) => raised(py, "DisagreementError", error.to_string()),
@@ -145,6 +149,7 @@ impl From<Error> for PyErr {
                 raised(py, "ChetaevError", chain(&error))
             }
             Error::Choice { .. }
+            | Error::Table { .. }
             | Error::Length { .. }
             | Error::NotFinite { .. }
             | Error::Law { .. }

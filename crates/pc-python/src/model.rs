@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::time::Duration;
 
 use pc_expr::{Cancel, Limits};
-use pc_mech::{EmitOptions, Language};
+use pc_mech::{EmitOptions, Interpolation, Language, Table};
 use pc_model::document::AbsoluteTolerance;
-use pc_model::{Assembly, Builtin, Document, Model, Variables, deep};
+use pc_model::{Assembly, Builtin, Document, GivenInput, Model, Variables, deep};
 use pc_print::{Form, Layout, Page, Theory, TheoryOptions, displayed_equations, page};
 use pc_report::Check;
 use pc_verify::{Options, Outlet, VerifyError, verify, vouch};
@@ -28,6 +28,7 @@ pub(crate) struct ModelCore {
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Changes {
+    inputs: Vec<(String, Course)>,
     parameters: Vec<(String, f64)>,
     start: Vec<(String, f64)>,
     project_start: bool,
@@ -39,6 +40,36 @@ pub(crate) struct Changes {
     limit_memory: Option<u64>,
     limit_time: Option<f64>,
     verify: bool,
+}
+
+/// What an input is given: a number, or times, values and the interpolation between them.
+#[derive(FromPyObject)]
+enum Course {
+    Constant(f64),
+    Table(Vec<f64>, Vec<f64>, String),
+}
+
+impl Course {
+    /// What the input of this name is given.
+    fn given(self, name: &str) -> Result<GivenInput, Error> {
+        match self {
+            Course::Constant(value) => Ok(GivenInput::Constant(finite(name, value)?)),
+            Course::Table(times, values, interpolation) => {
+                let interpolation = match interpolation.as_str() {
+                    "linear" => Interpolation::Linear,
+                    "cubic" => Interpolation::Cubic,
+                    "hold" => Interpolation::Hold,
+                    _ => {
+                        let known = vec!["linear", "cubic", "hold"];
+                        return Err(Error::Choice { what: "the interpolation", given: interpolation, known });
+                    }
+                };
+                let table = Table::new(times, values, interpolation);
+                let table = table.map_err(|error| Error::Table { name: name.to_owned(), error })?;
+                Ok(GivenInput::Table(table))
+            }
+        }
+    }
 }
 
 /// The form of this name.
@@ -152,6 +183,9 @@ impl ModelCore {
             },
             ..limits
         });
+        for (name, course) in changes.inputs {
+            model.give_input(&name, course.given(&name)?)?;
+        }
         for (name, value) in &changes.parameters {
             model.set(name, finite(name, *value)?)?;
         }

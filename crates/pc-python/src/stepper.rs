@@ -157,7 +157,7 @@ impl SystemCore {
         let document = model.document();
         let places = document.parameters.len()..document.parameters.len() + document.inputs.len();
         if places.clone().any(|place| tables.contains(&place)) {
-            let why = "an input follows a table, which a step would not change";
+            let why = "an input follows a table, which a step would not change; give it a number by `inputs` of the system";
             return Err(Error::Unsupported { what: "a stepper", why }.into());
         }
         let parameters = model.parameters().map(|(_, value)| value).collect();

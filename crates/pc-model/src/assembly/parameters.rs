@@ -109,6 +109,16 @@ impl Parameters {
         self.follow();
     }
 
+    /// Makes number `place` follow a table from `t_start` on, in place of what it was.
+    ///
+    /// # Panics
+    /// If there is no such parameter.
+    pub(crate) fn set_table(&mut self, place: usize, table: Table, t_start: f64) {
+        self.values[place] = table.at(t_start).unwrap_or(f64::NAN);
+        self.formulas[place] = Formula::Table(Arc::new(table));
+        self.follow();
+    }
+
     /// Gives all of them values, which replace their expressions. Tables are still read.
     ///
     /// # Panics

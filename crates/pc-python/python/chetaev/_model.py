@@ -12,6 +12,7 @@ from typing import Any
 from chetaev import _native
 from chetaev._language.builder import Builder
 from chetaev._language.errors import UnknownNameError
+from chetaev._language.inputs import course
 from chetaev._results.linear import Equilibria, Linearization, RootLocus
 from chetaev._results.printed import Check, Equations, Theory
 from chetaev._system import System
@@ -23,6 +24,7 @@ FORMS = ("poincare", "canonical", "lagrange", "voronets", "reduced", "lie-poisso
 
 def changes(
     *,
+    inputs: Mapping[str, Any] | None = None,
     parameters: Mapping[str, float] | None = None,
     start: Mapping[str, float] | None = None,
     project_start: bool = False,
@@ -37,6 +39,7 @@ def changes(
 ) -> dict[str, Any]:
     """What a model is changed by before it is derived, as the native part takes it."""
     return {
+        "inputs": [(name, course(name, given)) for name, given in (inputs or {}).items()],
         "parameters": [(name, float(value)) for name, value in (parameters or {}).items()],
         "start": [(name, float(value)) for name, value in (start or {}).items()],
         "project_start": project_start,
@@ -371,6 +374,9 @@ class Model:
             else Poincaré's.
         parameters, start : mapping, optional
             Values other than those of the text; they can be set later too.
+        inputs : mapping, optional
+            Inputs with what they are given in place of what the text says: a number, or a table ``(times, values)``, which is
+            interpolated by straight lines, or else as the third entry says, ``"linear"``, ``"cubic"`` or ``"hold"``.
         project_start : bool
             Whether the start is moved onto the constraints, where ``hold`` names what is not to be moved.
         project : sequence of str

@@ -54,6 +54,7 @@ class System(_native.SystemCore):
         settings = {**settings}
         settings["parameters"] = dict(settings.get("parameters") or {})
         settings["start"] = dict(settings.get("start") or {})
+        settings["inputs"] = dict(settings.get("inputs") or {})
         self = super().__new__(cls, model._changed(settings), form)
         assert isinstance(self, System)
         self._model = model
@@ -183,6 +184,20 @@ class System(_native.SystemCore):
         """
         return Bracket(self, str(f), str(g))
 
+    def _with(self, inputs: Mapping[str, Any], events: Mapping[str, object]) -> System:
+        """The system with other inputs, and with events beside those of the text."""
+        model, settings = self._model, self.settings()
+        if events:
+            text = model.text.rstrip("\n") + "\n\n"
+            for name, event in events.items():
+                text += (event if isinstance(event, Event) else Event(event)).text(name) + "\n"
+            model = model._rewritten(text)
+        settings["inputs"] = {**settings["inputs"], **inputs}
+        # What has been set since the system was made counts, except of these inputs.
+        for name in inputs:
+            settings["parameters"].pop(name, None)
+        return System(model, self._form, **settings)
+
     def _wished(
         self,
         *,
@@ -232,6 +247,7 @@ class System(_native.SystemCore):
         rtol: float | None = None,
         atol: float | Mapping[str, float] | None = None,
         max_step: float | None = None,
+        inputs: Mapping[str, Any] | None = None,
         events: Mapping[str, object] | None = None,
         samples_per_step: int | None = None,
         accumulation: float | None = None,
@@ -265,6 +281,9 @@ class System(_native.SystemCore):
             else min(1e-12, rtol s) for a component of the scale s at the start, where rounding leaves as much.
         max_step : float, optional
             The largest length of a step.
+        inputs : mapping, optional
+            What inputs are given in this run alone: numbers, or tables ``(times, values)``, as in :meth:`Model.system`. The model is
+            derived once more.
         events : mapping, optional
             Events beside those of the text: names with expressions that vanish, or with an :class:`Event`. The model is
             derived once more.
@@ -300,12 +319,8 @@ class System(_native.SystemCore):
         >>> motion["ω3"].shape
         (11,)
         """
-        if events:
-            text = self._model.text.rstrip("\n") + "\n\n"
-            for name, event in events.items():
-                text += (event if isinstance(event, Event) else Event(event)).text(name) + "\n"
-            watched = System(self._model._rewritten(text), self._form, **self.settings())
-            return watched.run(
+        if events or inputs:
+            return self._with(inputs or {}, events or {}).run(
                 t_end,
                 samples=samples,
                 times=times,
