@@ -43,6 +43,12 @@ pub enum AnalysisError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
+    /// Values that are not the only ones near by at which the rates vanish.
+    #[error("{} may change while the rates still vanish, so that nothing determines them", quoted(names))]
+    Undetermined {
+        /// The names of what may change.
+        names: Vec<String>,
+    },
     /// A name that no component of the state has.
     #[error("the state has no component `{name}`; it has {}", known.join(", "))]
     UnknownComponent {

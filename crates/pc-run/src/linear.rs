@@ -2,7 +2,8 @@
 //!
 //! A model becomes a linearizer with its start (`ground`), by which `pc_analysis` computes at the `state` that is asked for, also with other
 //! values (`near`). One linearization is `linearized`, printed as `text` or `json`; `compared` has its matrices compared with a second
-//! derivation. `locus` is the table of eigenvalues over a parameter, `found` the list of equilibria. `arrays` are their numbers, and `output`
+//! derivation. `locus` is the table of eigenvalues over a parameter, `found` the list of equilibria, `trim` a state of rest or steady
+//! motion by the choice of inputs. `arrays` are their numbers, and `output`
 //! writes files; `error` lists the errors.
 
 mod arrays;
@@ -17,3 +18,4 @@ pub(crate) mod near;
 mod output;
 pub mod state;
 mod text;
+pub mod trim;

@@ -72,7 +72,7 @@ pub struct Linearizer {
     depends_on_time: bool,
     names_time: bool,
     /// Names of the inputs and their places among the parameters.
-    inputs: Vec<(String, usize)>,
+    pub(super) inputs: Vec<(String, usize)>,
     outputs: Vec<String>,
     /// The positions, the kept functions and the conditions on velocities, then their slopes.
     surface: Evaluator,

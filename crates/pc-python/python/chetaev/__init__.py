@@ -71,7 +71,7 @@ from chetaev._language.joints import (
     Spherical,
     Universal,
 )
-from chetaev._results.linear import Equilibria, Equilibrium, Linearization, RootLocus
+from chetaev._results.linear import Equilibria, Equilibrium, Linearization, RootLocus, Trim
 from chetaev._model import Model
 from chetaev._results.motion import Motion, Occurrence
 from chetaev._native import Stepper, __version__
@@ -115,6 +115,7 @@ __all__ = [
     "Sweep",
     "System",
     "Theory",
+    "Trim",
     "Universal",
     "UnknownNameError",
     "__version__",

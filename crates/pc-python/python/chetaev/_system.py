@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 from chetaev import _native
 from chetaev._language.errors import IntegrationError
 from chetaev._language.events import Event
+from chetaev._language.names import names
+from chetaev._results.linear import Trim
 from chetaev._results.motion import Motion
 from chetaev._results.printed import Page
 from chetaev._results.quantities import Bracket, Lyapunov
@@ -430,6 +432,34 @@ class System(_native.SystemCore):
         (3,)
         """
         return swept(self, vary, random, members, seed, t_end, rows, threads, progress, settings)
+
+    def trim(self, free: str | Sequence[str] | None = None) -> Trim:
+        """The rest or the steady motion that some inputs and components of the state can be chosen for.
+
+        What is free is chosen by Newton's method from its value now; all else stays as it is, so that a velocity set at the start is
+        that of the steady motion. All rates vanish but those of cyclic coordinates, on which nothing depends.
+
+        Parameters
+        ----------
+        free : sequence of str, optional
+            The inputs, coordinates, quasi-velocities and first-order states to be chosen; all inputs unless given.
+
+        Raises
+        ------
+        ChetaevError
+            Where no values are found, or nothing determines some of them: these are named then.
+
+        Examples
+        --------
+        >>> drone = Model.builtin("quadrotor").system(start={"p": 0.0, "q": 0.0, "s": 0.0})
+        >>> hover = drone.trim(["f1", "f2", "f3", "f4", "θ", "φ"])
+        >>> round(hover.inputs["f1"], 6), round(hover.rates["z"], 6)
+        (1.22625, 0.2)
+        """
+        chosen = self._model.inputs if free is None else names("free", free)
+        if not chosen:
+            raise ValueError("name what is free: the model has no inputs")
+        return Trim(*self.model_now().trimmed(list(chosen)))
 
     def lyapunov(
         self, count: int = 1, *, interval: float, intervals: int, transient: int = 0, **settings: Any
