@@ -1,7 +1,7 @@
 //! The native part of the Python package `chetaev`: models, their equations printed, systems evaluated and integrated.
 //!
 //! It converts and delegates; what it returns is shaped by the package in `python/`, which says what users are told. Read
-//! `error`, the exceptions; `task`, work that Ctrl-C ends; `model`, a model and what is printed of it; `system`, its
+//! `error`, the exceptions, and `notation`, the options that their messages name; `task`, work that Ctrl-C ends; `model`, a model and what is printed of it; `system`, its
 //! compiled equations, with `evaluation` of states and of arrays of them, and `quantities` beside the rates, of `mechanics`; then
 //! `motion`, `dense`, `stepper`, `sweep` and `lyapunov`, integrations, all by the settings in `plan`, `linear`, the motions near a state,
 //! `animation`, pages, and `exchange`, robots in URDF and FMUs.
@@ -18,6 +18,7 @@ mod lyapunov;
 mod mechanics;
 mod model;
 mod motion;
+mod notation;
 mod plan;
 mod quantities;
 mod stepper;

@@ -1,7 +1,6 @@
 //! A model, and what is printed of it.
 
 use std::collections::HashMap;
-use std::time::Duration;
 
 use pc_expr::{Cancel, Limits};
 use pc_mech::{EmitOptions, Interpolation, Language, Table};
@@ -14,6 +13,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::Error;
+use crate::plan::limit;
 use crate::task::attended;
 
 /// A model with the values of its parameters and start, and the settings of its derivation; it never changes.
@@ -175,12 +175,7 @@ impl ModelCore {
         let limits = Limits::default();
         model.limit(Limits {
             memory: changes.limit_memory.unwrap_or(limits.memory),
-            time: match changes.limit_time {
-                None => None,
-                Some(seconds) => Some(Duration::try_from_secs_f64(seconds).map_err(|_| {
-                    Error::NotFinite { what: "the limit of time".to_owned(), value: seconds }
-                })?),
-            },
+            time: limit(changes.limit_time)?,
             ..limits
         });
         for (name, course) in changes.inputs {
