@@ -78,6 +78,7 @@ fn drawn(panel: Panel) -> Drawn {
 #[pymethods]
 impl SystemCore {
     /// The page of a motion; None where there is nothing to be drawn.
+    #[pyo3(name = "_animation_page")]
     fn animation_page(&self, py: Python<'_>, recorded: Recorded) -> PyResult<Option<String>> {
         let record = Record::from(recorded);
         self.derive(py, move |model| {
@@ -88,6 +89,7 @@ impl SystemCore {
     }
 
     /// The page of the model, with a motion where there is one.
+    #[pyo3(name = "_report_page")]
     fn report_page(&self, py: Python<'_>, recorded: Option<Recorded>) -> PyResult<String> {
         let record = recorded.map(Record::from);
         self.derive(py, move |model| Ok(report(model, record.as_ref())?))

@@ -18,8 +18,9 @@ use pyo3::types::PyDict;
 
 use crate::error::Error;
 use crate::model::renewed;
+use crate::notation::in_python;
 use crate::plan::Wished;
-use crate::system::SystemCore;
+use crate::system::{Inventory, SystemCore};
 use crate::task::attended;
 
 /// The part of the size of a state by which it may be off constraints: what is less, the first step takes away.
@@ -73,11 +74,11 @@ fn ending(run: &Run) -> (&'static str, Option<String>) {
 /// Why it did not come to its end, or is wrong.
 fn error(run: &Run) -> Option<String> {
     if let Some(lost) = &run.lost {
-        return Some(RunError::Lost(lost.clone()).to_string());
+        return Some(in_python(&RunError::Lost(lost.clone()).to_string()));
     }
     match &run.ending {
-        Ending::Failed(error) => Some(chain(error.as_ref())),
-        _ => run.stopped().map(|stopped| stopped.to_string()),
+        Ending::Failed(error) => Some(in_python(&chain(error.as_ref()))),
+        _ => run.stopped().map(|stopped| in_python(&stopped.to_string())),
     }
 }
 
@@ -98,7 +99,8 @@ fn kinds<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound<'py, PyDict>> {
     Ok(kinds)
 }
 
-fn into_dict(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
+/// `kept` are the values at the start of what should stay constant.
+fn into_dict(py: Python<'_>, run: Run, kept: Vec<f64>) -> PyResult<Bound<'_, PyDict>> {
     let (rows, width) = (run.table.len(), run.table.columns().len() - 1);
     let result = PyDict::new(py);
     let (ending, event) = ending(&run);
@@ -113,6 +115,7 @@ fn into_dict(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
     result.set_item("columns", &run.table.columns()[1..])?;
     result.set_item("kinds", kinds(py, &run.table)?)?;
     result.set_item("keeps_energy", run.keeps_energy)?;
+    result.set_item("conserved_at_start", kept)?;
     let occurrences = run.occurrences.into_iter().map(|occurrence| {
         let Occurrence { event, time, state_before, state_after } = occurrence;
         let name = run.events.get(event).cloned().unwrap_or_default();
@@ -128,6 +131,7 @@ fn into_dict(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
 impl SystemCore {
     /// The motion that is wished, and what is said of it. The first one is compared with a second derivation unless `verify` says
     /// otherwise of this one.
+    #[pyo3(name = "_integrate")]
     fn integrate<'py>(
         &self,
         py: Python<'py>,
@@ -142,6 +146,9 @@ impl SystemCore {
             on_constraints(&mut derived.flow, self.inventory.t_start, &start)?;
             derived.flow.start = start;
         }
+        let Inventory { t_start, shown, conserved, .. } = &self.inventory;
+        let start = derived.flow.start.clone();
+        let kept = derived.flow.row(*t_start, &start)[*shown..][..*conserved].to_vec();
         let cancel = renewed(&mut model);
         let plan = wished.plan(&model, self.variables, &cancel)?;
         let verify =
@@ -164,9 +171,9 @@ impl SystemCore {
             && matches!(**error, SolveError::Input(_))
         {
             let begun = std::mem::replace(&mut run.ending, Ending::Interrupted);
-            let Ending::Failed(error) = begun else { return into_dict(py, run) };
+            let Ending::Failed(error) = begun else { return into_dict(py, run, kept) };
             return Err(Error::from(*error).into());
         }
-        into_dict(py, run)
+        into_dict(py, run, kept)
     }
 }

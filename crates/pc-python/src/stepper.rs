@@ -17,7 +17,7 @@ use crate::system::SystemCore;
 /// A motion that is integrated from one time of a controller to the next, with inputs that are constant between them.
 ///
 /// It is made by `System.stepper`.
-#[pyclass(frozen, module = "chetaev._native")]
+#[pyclass(frozen, module = "chetaev")]
 pub(crate) struct Stepper(Mutex<Walk>);
 
 /// Where a motion is.
@@ -147,6 +147,7 @@ impl Walk {
 #[pymethods]
 impl SystemCore {
     /// A motion from the start, step by step; tolerances are scaled over a step of this length.
+    #[pyo3(name = "_stepping")]
     fn stepping(&self, wished: Wished) -> PyResult<Stepper> {
         let (mut model, derived) = self.now();
         let cancel = renewed(&mut model);

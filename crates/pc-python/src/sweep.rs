@@ -71,6 +71,7 @@ impl SystemCore {
     /// The motions of members whose `values` of the quantities stand one after the other; `progress` is told now and then how many are
     /// done. Where it is to be verified, the first member, one in the middle and the last are compared with a second derivation.
     #[expect(clippy::too_many_arguments, reason = "those of Python")]
+    #[pyo3(name = "_ensemble")]
     fn ensemble<'py>(
         &self,
         py: Python<'py>,

@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 import os
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
 from chetaev import _native
+from chetaev._language.arguments import listed, only, real, reals, whole
 from chetaev._language.builder import Builder
 from chetaev._language.errors import UnknownNameError
 from chetaev._language.inputs import course
@@ -22,40 +23,35 @@ from chetaev._system import System
 FORMS = ("poincare", "canonical", "lagrange", "voronets", "reduced", "lie-poisson", "orthonormal", "hamel")
 
 
-def changes(
-    *,
-    inputs: Mapping[str, Any] | None = None,
-    parameters: Mapping[str, float] | None = None,
-    start: Mapping[str, float] | None = None,
-    project_start: bool = False,
-    hold: Sequence[str] = (),
-    project: Sequence[str] = (),
-    velocities: Mapping[str, object] | None = None,
-    independent: Sequence[str] = (),
-    reactions: bool = False,
-    limit_memory: int | None = None,
-    limit_time: float | None = None,
-    verify: bool = True,
-) -> dict[str, Any]:
-    """What a model is changed by before it is derived, as the native part takes it."""
-    return {
-        "inputs": [(name, course(name, given)) for name, given in (inputs or {}).items()],
-        "parameters": [(name, float(value)) for name, value in (parameters or {}).items()],
-        "start": [(name, float(value)) for name, value in (start or {}).items()],
-        "project_start": project_start,
-        "hold": list(hold),
-        "project": list(project),
-        "velocities": [(name, str(value)) for name, value in (velocities or {}).items()],
-        "independent": list(independent),
-        "reactions": reactions,
-        "limit_memory": limit_memory,
-        "limit_time": limit_time,
-        "verify": verify,
-    }
+#: What a model is changed by before it is derived: each with what it is unless given, and how it is read.
+_CHANGES: dict[str, tuple[Any, Callable[[str, Any], Any]]] = {
+    "inputs": ({}, lambda _, given: [(name, course(name, one)) for name, one in given.items()]),
+    "parameters": ({}, lambda kind, given: list(reals(kind, given).items())),
+    "start": ({}, lambda kind, given: list(reals(kind, given).items())),
+    "project_start": (False, lambda _, given: bool(given)),
+    "hold": ((), listed),
+    "project": ((), listed),
+    "velocities": ({}, lambda _, given: [(name, str(one)) for name, one in given.items()]),
+    "independent": ((), listed),
+    "reactions": (False, lambda _, given: bool(given)),
+    "limit_memory": (None, lambda name, given: None if given is None else whole(name, given)),
+    "limit_time": (None, lambda name, given: None if given is None else real(name, given)),
+    "verify": (True, lambda _, given: bool(given)),
+}
 
 
-def _state(at: str, hold: Sequence[str], cyclic: str | None) -> dict[str, Any]:
-    return {"at": at, "hold": list(hold), "cyclic": cyclic}
+def changes(call: str, settings: Mapping[str, Any]) -> dict[str, Any]:
+    """What a model is changed by before it is derived, as the native part takes it; an error names the call."""
+    only(call, settings, _CHANGES)
+    found = {}
+    for name, (default, read) in _CHANGES.items():
+        given = settings.get(name)
+        found[name] = read(name, default if given is None else given)
+    return found
+
+
+def _state(at: str, hold: str | Sequence[str], cyclic: str | None) -> dict[str, Any]:
+    return {"at": at, "hold": listed("hold", hold), "cyclic": cyclic}
 
 
 class Model:
@@ -79,6 +75,8 @@ class Model:
     __slots__ = ("_core", "_text")
 
     def __init__(self, text: str | bytes, name: str = "<text>") -> None:
+        if not isinstance(text, (str, bytes)):
+            raise TypeError(f"the text of a model is str or bytes, not {type(text).__name__}; Model.from_file reads a file")
         self._text = text if isinstance(text, bytes) else text.encode()
         self._core = _native.ModelCore(name, self._text)
 
@@ -197,7 +195,7 @@ class Model:
         >>> check.data["rank"]
         2
         """
-        text, data = self._changed(settings).check()
+        text, data = self._changed("Model.check", settings).check()
         return Check(text, json.loads(data))
 
     def derive(
@@ -229,13 +227,13 @@ class Model:
         """The model of another text, whose tables stand beside the same file."""
         return Model(text, self.name)
 
-    def _changed(self, settings: Mapping[str, Any]) -> _native.ModelCore:
-        return self._core.changed(changes(**settings))
+    def _changed(self, call: str, settings: Mapping[str, Any]) -> _native.ModelCore:
+        return self._core.changed(changes(call, settings))
 
     def _form(self, form: str | None) -> str:
         return form or self._core.simulation()["form"] or "poincare"
 
-    def theory(self, *, degree: int = 2, functions: Sequence[object] = (), **settings: Any) -> Theory:
+    def theory(self, *, degree: int = 2, functions: object = (), **settings: Any) -> Theory:
         """Brackets, Casimir functions, integrals, steady motions and their stability, Routh's reduction.
 
         Parameters
@@ -247,7 +245,8 @@ class Model:
         **settings
             As for :meth:`system`.
         """
-        return Theory(self, degree, [str(f) for f in functions], settings)
+        several = functions if isinstance(functions, (list, tuple)) else [functions]
+        return Theory(self, degree, [str(f) for f in several], settings)
 
     def fmu(
         self,
@@ -279,7 +278,7 @@ class Model:
         """
         solves = None if solver is None else (solver, step)
         name = os.path.splitext(os.path.basename(os.fspath(path)))[0]
-        core = self._changed(settings)
+        core = self._changed("Model.fmu", settings)
         for remark in core.write_fmu(os.fspath(path), name, version, form or "poincare", solves, compiled):
             warnings.warn(remark, stacklevel=2)
 
@@ -287,7 +286,7 @@ class Model:
         self,
         at: str = "steady",
         *,
-        hold: Sequence[str] = (),
+        hold: str | Sequence[str] = (),
         cyclic: str | None = None,
         **settings: Any,
     ) -> Linearization:
@@ -316,7 +315,7 @@ class Model:
         >>> linear.is_steady
         True
         """
-        return Linearization(*self._changed(settings).linearized(_state(at, hold, cyclic)))
+        return Linearization(*self._changed("Model.linearize", settings).linearized(_state(at, hold, cyclic)))
 
     def root_locus(
         self,
@@ -324,7 +323,7 @@ class Model:
         values: Sequence[float],
         at: str = "steady",
         *,
-        hold: Sequence[str] = (),
+        hold: str | Sequence[str] = (),
         cyclic: str | None = None,
         **settings: Any,
     ) -> RootLocus:
@@ -338,7 +337,7 @@ class Model:
         (5, 4)
         """
         listed = [float(value) for value in values]
-        return RootLocus(*self._changed(settings).locus(name, listed, _state(at, hold, cyclic)))
+        return RootLocus(*self._changed("Model.root_locus", settings).locus(name, listed, _state(at, hold, cyclic)))
 
     def equilibria(
         self, box: Mapping[str, tuple[float, float]] | None = None, *, starts: int = 256, **settings: Any
@@ -362,7 +361,7 @@ class Model:
         [0.0, 3.141593]
         """
         bounds = [(name, float(low), float(high)) for name, (low, high) in (box or {}).items()]
-        return Equilibria(*self._changed(settings).equilibria(bounds, starts))
+        return Equilibria(*self._changed("Model.equilibria", settings).equilibria(bounds, starts))
 
     def system(self, form: str | None = None, **settings: Any) -> System:
         """The equations of motion, compiled.

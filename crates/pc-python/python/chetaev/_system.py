@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from chetaev import _native
+from chetaev._language.arguments import listed, only, real, reals, whole
 from chetaev._language.errors import IntegrationError
 from chetaev._language.events import Event
-from chetaev._language.names import names
 from chetaev._results.linear import Trim
 from chetaev._results.motion import Motion
 from chetaev._results.printed import Page
@@ -26,7 +26,11 @@ if TYPE_CHECKING:
     Floats = npt.NDArray[np.float64]
 
 
-class System(_native.SystemCore):
+#: What integrations take beside a span of time.
+_STEPS = ("method", "rtol", "atol", "max_step", "samples_per_step", "accumulation", "limit_time")
+
+
+class System(_native.System):
     """ẏ = f(t, y) of a model, compiled, with values of parameters and start that can be set.
 
     ``system(t, y)`` is ẏ, and ``system.jac(t, y)`` its Jacobian, as :func:`scipy.integrate.solve_ivp` takes them. Where ``y`` is an array
@@ -54,10 +58,10 @@ class System(_native.SystemCore):
 
     def __new__(cls, model: ModelLike, form: str = "poincare", **settings: Any) -> System:
         settings = {**settings}
-        settings["parameters"] = dict(settings.get("parameters") or {})
-        settings["start"] = dict(settings.get("start") or {})
+        for kind in ("parameters", "start"):
+            settings[kind] = reals(kind, settings.get(kind) or {})
         settings["inputs"] = dict(settings.get("inputs") or {})
-        self = super().__new__(cls, model._changed(settings), form)
+        self = super().__new__(cls, model._changed("Model.system", settings), form)
         assert isinstance(self, System)
         self._model = model
         self._form = form
@@ -84,24 +88,24 @@ class System(_native.SystemCore):
     @property
     def names(self) -> tuple[str, ...]:
         """The names of the components of a state."""
-        return tuple(self.state_names)
+        return tuple(self._state_names)
 
     @property
     def columns(self) -> tuple[str, ...]:
         """The names of the columns of a motion, without ``t``."""
-        return tuple(self.column_names)
+        return tuple(self._column_names)
 
     @property
     def y0(self) -> Floats:
         """The state at the start."""
         import numpy as np
 
-        return np.array(self.start_state())
+        return np.array(self._start_state())
 
     @property
     def t0(self) -> float:
         """The time at the start."""
-        return self.t_start
+        return self._t_start
 
     @property
     def parameters(self) -> Values:
@@ -128,9 +132,8 @@ class System(_native.SystemCore):
     def _set(
         self, *, parameters: Mapping[str, float] | None = None, start: Mapping[str, float] | None = None
     ) -> None:
-        parameters = {name: float(value) for name, value in (parameters or {}).items()}
-        start = {name: float(value) for name, value in (start or {}).items()}
-        self.update(list(parameters.items()), list(start.items()))
+        parameters, start = reals("parameters", parameters or {}), reals("start", start or {})
+        self._update(list(parameters.items()), list(start.items()))
         self._settings["parameters"].update(parameters)
         self._settings["start"].update(start)
 
@@ -143,13 +146,13 @@ class System(_native.SystemCore):
         >>> sorted(system.observe(0.0, system.y0))[:3]
         ['area', 'energy', 'norm']
         """
-        return dict(zip(self.column_names, self.row(t, y)))
+        return dict(zip(self._column_names, self._row(t, y)))
 
     def mass_matrix(self, t: float, y: npt.ArrayLike) -> Floats:
         """The mass matrix M = ∂²L/∂η∂η of the quasi-velocities of a state."""
         import numpy as np
 
-        size, entries = self.mass_entries(float(t), np.asarray(y, dtype=float).tolist())
+        size, entries = self._mass_entries(float(t), np.asarray(y, dtype=float).tolist())
         return np.array(entries).reshape(size, size)
 
     def reactions(self, t: npt.ArrayLike, y: npt.ArrayLike) -> dict[str, Any]:
@@ -212,7 +215,7 @@ class System(_native.SystemCore):
         max_step: float | None = None,
         samples_per_step: int | None = None,
         accumulation: float | None = None,
-        sensitivities: Sequence[str] = (),
+        sensitivities: str | Sequence[str] = (),
         limit_time: float | None = None,
     ) -> dict[str, Any]:
         """What is wished of an integration, as the native part takes it; None is that of the text, or else the default."""
@@ -222,20 +225,19 @@ class System(_native.SystemCore):
             raise ValueError("give either times, or t_end and samples")
         if times is not None and np.size(times) == 0:
             raise ValueError("there are no times")
-        if samples is not None and samples < 2:
+        if samples is not None and whole("samples", samples) < 2:
             raise ValueError("a motion has at least 2 samples, its start and its end")
+        if method is not None and not isinstance(method, str):
+            raise TypeError(f"method is a name, not {method!r}")
+        numbers = {"t_end": t_end, "rtol": rtol, "max_step": max_step, "accumulation": accumulation, "limit_time": limit_time}
         return {
-            "t_end": None if t_end is None else float(t_end),
+            **{name: None if given is None else real(name, given) for name, given in numbers.items()},
             "samples": samples,
-            "times": None if times is None else np.asarray(times, dtype=float).tolist(),
+            "times": None if times is None else np.atleast_1d(np.asarray(times, dtype=float)).tolist(),
             "method": method,
-            "rtol": rtol,
-            "atol": dict(atol) if isinstance(atol, Mapping) else atol,
-            "max_step": max_step,
-            "samples_per_step": samples_per_step,
-            "accumulation": accumulation,
-            "sensitivities": list(sensitivities),
-            "limit_time": limit_time,
+            "atol": reals("atol", atol) if isinstance(atol, Mapping) else None if atol is None else real("atol", atol),
+            "samples_per_step": None if samples_per_step is None else whole("samples_per_step", samples_per_step),
+            "sensitivities": listed("sensitivities", sensitivities),
         }
 
     def run(
@@ -253,7 +255,7 @@ class System(_native.SystemCore):
         events: Mapping[str, object] | None = None,
         samples_per_step: int | None = None,
         accumulation: float | None = None,
-        sensitivities: Sequence[str] = (),
+        sensitivities: str | Sequence[str] = (),
         estimate: bool = False,
         limit_time: float | None = None,
         verify: bool | None = None,
@@ -356,7 +358,7 @@ class System(_native.SystemCore):
         import numpy as np
 
         state = None if y0 is None else np.asarray(y0, dtype=float).ravel().tolist()
-        outcome = self.integrate(wished, state, estimate, verify)
+        outcome = self._integrate(wished, state, bool(estimate), None if verify is None else bool(verify))
         motion = Motion(self, wished, state, outcome)
         if outcome["error"] is not None:
             raise IntegrationError(outcome["error"], motion)
@@ -371,7 +373,7 @@ class System(_native.SystemCore):
         Parameters
         ----------
         **settings
-            ``method``, ``rtol``, ``atol``, ``max_step``, … as for :meth:`run`.
+            ``method``, ``rtol``, ``atol``, ``max_step``, ``samples_per_step``, ``accumulation``, ``limit_time`` as for :meth:`run`.
 
         Examples
         --------
@@ -382,7 +384,8 @@ class System(_native.SystemCore):
         >>> round(stepper.t, 9)
         1.0
         """
-        return self.stepping(self._wished(**{"t_end": self.t0 + 1.0, **settings}))
+        only("System.stepper", settings, _STEPS)
+        return self._stepping(self._wished(t_end=self.t0 + 1.0, **settings))
 
     def sweep(
         self,
@@ -421,8 +424,8 @@ class System(_native.SystemCore):
         progress : bool
             Whether to show progress, by tqdm where it is installed.
         **settings
-            ``method``, ``rtol``, ``atol``, ``max_step``, … as for :meth:`run`. The first member, one in the middle and the last are
-            compared with a second derivation unless ``verify=False``.
+            ``method``, ``rtol``, ``atol``, ``max_step``, ``samples_per_step``, ``accumulation``, ``limit_time`` as for :meth:`run`. The
+            first member, one in the middle and the last are compared with a second derivation unless ``verify=False``.
 
         Examples
         --------
@@ -431,6 +434,7 @@ class System(_native.SystemCore):
         >>> sweep["ω3"].shape
         (3,)
         """
+        only("System.sweep", settings, (*_STEPS, "verify"))
         return swept(self, vary, random, members, seed, t_end, rows, threads, progress, settings)
 
     def trim(self, free: str | Sequence[str] | None = None) -> Trim:
@@ -456,10 +460,10 @@ class System(_native.SystemCore):
         >>> round(hover.inputs["f1"], 6), round(hover.rates["z"], 6)
         (1.22625, 0.2)
         """
-        chosen = self._model.inputs if free is None else names("free", free)
+        chosen = self._model.inputs if free is None else listed("free", free)
         if not chosen:
             raise ValueError("name what is free: the model has no inputs")
-        return Trim(*self.model_now().trimmed(list(chosen)))
+        return Trim(*self._model_now().trimmed(list(chosen)))
 
     def lyapunov(
         self, count: int = 1, *, interval: float, intervals: int, transient: int = 0, **settings: Any
@@ -475,18 +479,19 @@ class System(_native.SystemCore):
         intervals, transient : int
             How many intervals are counted, and how many before them are not.
         **settings
-            ``method``, ``rtol``, ``atol`` as for :meth:`run`.
+            ``method``, ``rtol``, ``atol``, ``max_step``, … as for :meth:`run`.
         """
         import numpy as np
 
+        only("System.lyapunov", settings, _STEPS)
         end = self.t0 + float(interval) * (intervals + transient)
         wished = self._wished(t_end=end, **settings)
-        exponents, history = self.exponents(count, float(interval), (intervals, transient), wished)
+        exponents, history = self._exponents(count, float(interval), (intervals, transient), wished)
         return Lyapunov(np.array(exponents), np.array(history).reshape(-1, count))
 
     def report(self, motion: Motion | None = None) -> Page:
         """One page with all that is known of the model, and with a motion where one is given."""
-        return Page(self.report_page(None if motion is None else motion._recorded()), height=800)
+        return Page(self._report_page(None if motion is None else motion._recorded()), height=800)
 
 
 def _restored(model: ModelLike, form: str, settings: dict[str, Any]) -> System:

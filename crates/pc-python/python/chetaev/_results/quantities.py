@@ -29,7 +29,7 @@ class Bracket:
 
     def __init__(self, system: SystemLike, f: str, g: str) -> None:
         self._arguments = (system, f, g)
-        self._function = system.poisson_bracket(f, g)
+        self._function = system._poisson_bracket(f, g)
 
     def __call__(self, t: float, y: npt.ArrayLike) -> float:
         import numpy as np

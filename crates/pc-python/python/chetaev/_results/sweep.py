@@ -124,7 +124,7 @@ def swept(
         called = lambda done: bar.update(done - bar.n)  # noqa: E731
     try:
         all_rows = rows is not None
-        found = system.ensemble(list(names), values.ravel().tolist(), wished, all_rows, threads, verify, called)
+        found = system._ensemble(list(names), values.ravel().tolist(), wished, all_rows, threads, verify, called)
     finally:
         if bar is not None:
             bar.close()
