@@ -142,6 +142,7 @@ fn of_run(py: Python<'_>, error: &RunError) -> PyErr {
             );
             raised(py, "ChetaevError", &message)
         }
+        RunError::Integration { .. } => raised(py, "IntegrationError", &chain(error)),
         other => raised(py, "ChetaevError", &chain(other)),
     }
 }

@@ -3,7 +3,7 @@
 //! It converts and delegates; what it returns is shaped by the package in `python/`, which says what users are told. Read
 //! `error`, the exceptions, and `notation`, the options that their messages name; `task`, work that Ctrl-C ends; `model`, a model and what is printed of it; `system`, its
 //! compiled equations, with `evaluation` of states and of arrays of them, and `quantities` beside the rates, of `mechanics`; then
-//! `motion`, `dense`, `stepper`, `sweep` and `lyapunov`, integrations, all by the settings in `plan`, `linear`, the motions near a state,
+//! `motion`, `dense`, `stepper`, `sweep`, `gradient` and `lyapunov`, integrations, all by the settings in `plan`, `linear`, the motions near a state,
 //! `animation`, pages, and `exchange`, robots in URDF and FMUs.
 
 #![expect(clippy::needless_pass_by_value, reason = "what Python gives is converted into values of our own")]
@@ -13,6 +13,7 @@ mod dense;
 mod error;
 mod evaluation;
 mod exchange;
+mod gradient;
 mod linear;
 mod lyapunov;
 mod mechanics;

@@ -227,6 +227,22 @@ impl ModelCore {
         self.model.parameters().map(|(name, value)| (name.to_owned(), value)).collect()
     }
 
+    /// Names of the parameters and inputs that are numbers alone: they follow neither others nor a table, and no others follow them.
+    fn numbers(&self) -> Vec<&str> {
+        let values = self.model.parameter_values();
+        let is_alone = |place: usize, value: f64| {
+            let mut moved = values.clone();
+            moved.set(place, value + value.abs().max(1.0));
+            let others = moved.values().iter().zip(values.values()).enumerate();
+            others.into_iter().all(|(i, (moved, held))| i == place || moved == held)
+        };
+        let names = self.model.parameters().enumerate();
+        let names = names.filter(|&(place, (_, value))| {
+            !values.follows(place) && !values.is_table(place) && is_alone(place, value)
+        });
+        names.map(|(_, (name, _))| name).collect()
+    }
+
     /// Names of the inputs.
     fn inputs(&self) -> Vec<&str> {
         self.model.document().inputs.iter().map(|input| input.name.text.as_str()).collect()

@@ -12,7 +12,7 @@ from chetaev._language.events import Event
 from chetaev._results.linear import Trim
 from chetaev._results.motion import Motion
 from chetaev._results.printed import Page
-from chetaev._results.quantities import Bracket, Lyapunov
+from chetaev._results.quantities import Bracket, Gradient, Lyapunov
 from chetaev._results.sweep import Sweep, swept
 from chetaev._results.values import Values
 
@@ -488,6 +488,52 @@ class System(_native.System):
         wished = self._wished(t_end=end, **settings)
         exponents, history = self._exponents(count, float(interval), (intervals, transient), wished)
         return Lyapunov(np.array(exponents), np.array(history).reshape(-1, count))
+
+    def gradient(
+        self,
+        of: object | None = None,
+        t_end: float | None = None,
+        *,
+        integral: object | None = None,
+        by: str | Sequence[str] | None = None,
+        **settings: Any,
+    ) -> Gradient:
+        """The derivatives of one function of the motion by parameters and by the start, by the adjoint equations.
+
+        The motion is integrated there and back once, whatever the number of parameters; ``sensitivities`` of :meth:`run`, which are
+        derivatives of all columns, take an integration for each. Derivatives are as accurate as ``rtol`` of the steps makes them.
+
+        Parameters
+        ----------
+        of : expression, optional
+            The function at the end of the motion: an expression of the model, or the name of an output.
+        t_end : float, optional
+            The end of time, else that of the text.
+        integral : expression, optional
+            A function whose integral over the motion is added.
+        by : sequence of str, optional
+            Parameters and inputs; unless given all that are numbers and that no other parameter is an expression in.
+        **settings
+            ``rtol``, ``atol``, ``max_step``, … as for :meth:`run`; ``method`` is ``"adams"`` or ``"bdf"``.
+
+        Examples
+        --------
+        >>> system = Model.builtin("heavy-top-lagrange").system()
+        >>> gradient = system.gradient("γ3", 2.0, rtol=1e-10)
+        >>> motion = system.run(2.0, rtol=1e-10, sensitivities=["mg"])
+        >>> bool(abs(gradient.by_parameters["mg"] - motion.sensitivity("γ3", "mg")[-1]) < 1e-7)
+        True
+        """
+        only("System.gradient", settings, _STEPS)
+        if of is None and integral is None:
+            raise ValueError("name a function at the end of the motion, or one that is integrated")
+        if settings.get("method") not in (None, "adams", "bdf"):
+            raise ValueError(f"the method of a gradient is `adams` or `bdf`, not `{settings['method']}`")
+        known = self._model_now().numbers() if by is None else listed("by", by)
+        wished = self._wished(t_end=t_end, sensitivities=known, **settings)
+        end, density = (None if term is None else str(term) for term in (of, integral))
+        value, start, parameters = self._gradient(end, density, wished)
+        return Gradient(value, dict(parameters), dict(start))
 
     def report(self, motion: Motion | None = None) -> Page:
         """One page with all that is known of the model, and with a motion where one is given."""

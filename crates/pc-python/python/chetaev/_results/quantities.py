@@ -22,6 +22,17 @@ class Lyapunov(NamedTuple):
     history: Floats
 
 
+class Gradient(NamedTuple):
+    """A function of a motion with its derivatives."""
+
+    #: Its value.
+    value: float
+    #: The derivatives by parameters and inputs, by their names.
+    by_parameters: dict[str, float]
+    #: The derivatives by the components of the state at the start, by their names, each with the others held.
+    by_start: dict[str, float]
+
+
 class Bracket:
     """The Poisson bracket (f, g) (12) of two functions of the state, a function of time and state."""
 
