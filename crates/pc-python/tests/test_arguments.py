@@ -54,6 +54,8 @@ def test_errors_name_nothing_private() -> None:
         "dt": lambda: stepper.step("x"),
         "Stepper": lambda: chetaev.Stepper(),
         r"System\.jac": lambda: system.jac(),
+        "rows is a whole number": lambda: system.sweep({"mg": [1.0]}, t_end=1.0, rows=2.5),
+        r"of a Model, by Model\.system": lambda: chetaev.System("pendulum"),
         "str or bytes": lambda: chetaev.Model(3),
     }
     for message, attempt in attempts.items():

@@ -57,6 +57,8 @@ class System(_native.System):
     _companion: System | None
 
     def __new__(cls, model: ModelLike, form: str = "poincare", **settings: Any) -> System:
+        if not hasattr(model, "_changed"):
+            raise TypeError(f"a system is made of a Model, by Model.system(), not of {model!r}")
         settings = {**settings}
         for kind in ("parameters", "start"):
             settings[kind] = reals(kind, settings.get(kind) or {})
