@@ -44,14 +44,14 @@ pub(crate) struct Changes {
 
 /// What an input is given: a number, or times, values and the interpolation between them.
 #[derive(FromPyObject)]
-enum Course {
+pub(crate) enum Course {
     Constant(f64),
     Table(Vec<f64>, Vec<f64>, String),
 }
 
 impl Course {
     /// What the input of this name is given.
-    fn given(self, name: &str) -> Result<GivenInput, Error> {
+    pub(crate) fn given(self, name: &str) -> Result<GivenInput, Error> {
         match self {
             Course::Constant(value) => Ok(GivenInput::Constant(finite(name, value)?)),
             Course::Table(times, values, interpolation) => {

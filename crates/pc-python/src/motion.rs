@@ -6,7 +6,8 @@ use std::sync::atomic::Ordering;
 use numpy::PyArray1;
 use numpy::prelude::*;
 use pc_expr::VectorField;
-use pc_model::{Flow, deep};
+use pc_model::{Flow, Model, deep};
+use pc_run::motion::derived::Derived;
 use pc_run::motion::integrate::Besides;
 use pc_run::motion::run::{Ending, Run};
 use pc_run::motion::table::Table;
@@ -17,7 +18,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::Error;
-use crate::model::renewed;
+use crate::model::{Course, renewed};
 use crate::notation::in_python;
 use crate::plan::Wished;
 use crate::system::{Inventory, SystemCore};
@@ -127,11 +128,43 @@ fn into_dict(py: Python<'_>, run: Run, kept: Vec<f64>) -> PyResult<Bound<'_, PyD
     Ok(result)
 }
 
+impl SystemCore {
+    /// The model with the values as they are now and its equations, both with these inputs.
+    fn driven(&self, py: Python<'_>, inputs: Vec<(String, Course)>) -> PyResult<(Model, Derived)> {
+        let (mut model, derived) = self.now();
+        if inputs.is_empty() {
+            return Ok((model, derived));
+        }
+        let tables = |model: &Model| -> Vec<usize> {
+            model.parameter_values().tables().iter().map(|&(place, _)| place).collect()
+        };
+        let (before, mut is_other) = (tables(&model), false);
+        for (name, course) in inputs {
+            is_other |= matches!(course, Course::Table(..));
+            model.give_input(&name, course.given(&name)?).map_err(Error::from)?;
+        }
+        is_other |= tables(&model) != before;
+        let cancel = renewed(&mut model);
+        let (variables, t_start, known) = (self.variables, self.inventory.t_start, model.clone());
+        let work = move || {
+            deep(|| {
+                if !is_other {
+                    return Ok(derived.renewed(&known, variables, t_start)?);
+                }
+                let graph = known.graph();
+                Ok(Derived::of(&known, &known.assemble(&graph)?, variables)?)
+            })
+        };
+        Ok((model, attended(py, &cancel, |_| Ok(()), work)?))
+    }
+}
+
 #[pymethods]
 impl SystemCore {
     /// The motion that is wished, and what is said of it. The first one is compared with a second derivation unless `verify` says
-    /// otherwise of this one.
+    /// otherwise of this one. `inputs` are those of this motion alone.
     #[pyo3(name = "_integrate")]
+    #[expect(clippy::too_many_arguments, reason = "those of Python")]
     fn integrate<'py>(
         &self,
         py: Python<'py>,
@@ -139,8 +172,9 @@ impl SystemCore {
         start: Option<Vec<f64>>,
         estimate: bool,
         verify: Option<bool>,
+        inputs: Vec<(String, Course)>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (mut model, mut derived) = self.now();
+        let (mut model, mut derived) = self.driven(py, inputs)?;
         if let Some(start) = start {
             self.check_length(start.len())?;
             on_constraints(&mut derived.flow, self.inventory.t_start, &start)?;

@@ -9,6 +9,7 @@ from chetaev import _native
 from chetaev._language.arguments import listed, only, real, reals, whole
 from chetaev._language.errors import IntegrationError
 from chetaev._language.events import Event
+from chetaev._language.inputs import course
 from chetaev._results.linear import Trim
 from chetaev._results.motion import Motion
 from chetaev._results.printed import Page
@@ -191,19 +192,20 @@ class System(_native.System):
         """
         return Bracket(self, str(f), str(g))
 
-    def _with(self, inputs: Mapping[str, Any], events: Mapping[str, object]) -> System:
-        """The system with other inputs, and with events beside those of the text."""
-        model, settings = self._model, self.settings()
-        if events:
-            text = model.text.rstrip("\n") + "\n\n"
-            for name, event in events.items():
-                text += (event if isinstance(event, Event) else Event(event)).text(name) + "\n"
-            model = model._rewritten(text)
+    def _watched(self, events: Mapping[str, object]) -> System:
+        """The system with events beside those of the text."""
+        text = self._model.text.rstrip("\n") + "\n\n"
+        for name, event in events.items():
+            text += (event if isinstance(event, Event) else Event(event)).text(name) + "\n"
+        return System(self._model._rewritten(text), self._form, **self.settings())
+
+    def _driven(self, inputs: Mapping[str, Any]) -> dict[str, Any]:
+        """The settings with other inputs: what has been set since the system was made counts, except of these."""
+        settings = self.settings()
         settings["inputs"] = {**settings["inputs"], **inputs}
-        # What has been set since the system was made counts, except of these inputs.
         for name in inputs:
             settings["parameters"].pop(name, None)
-        return System(model, self._form, **settings)
+        return settings
 
     def _wished(
         self,
@@ -288,8 +290,8 @@ class System(_native.System):
         max_step : float, optional
             The largest length of a step.
         inputs : mapping, optional
-            What inputs are given in this run alone: numbers, or tables ``(times, values)``, as in :meth:`Model.system`. The model is
-            derived once more.
+            What inputs are given in this run alone: numbers, or tables ``(times, values)``, as in :meth:`Model.system`. A
+            table takes a derivation.
         events : mapping, optional
             Events beside those of the text: names with expressions that vanish, or with an :class:`Event`. The model is
             derived once more.
@@ -325,8 +327,8 @@ class System(_native.System):
         >>> motion["ω3"].shape
         (11,)
         """
-        if events or inputs:
-            return self._with(inputs or {}, events or {}).run(
+        if events:
+            return self._watched(events).run(
                 t_end,
                 samples=samples,
                 times=times,
@@ -335,6 +337,7 @@ class System(_native.System):
                 rtol=rtol,
                 atol=atol,
                 max_step=max_step,
+                inputs=inputs,
                 samples_per_step=samples_per_step,
                 accumulation=accumulation,
                 sensitivities=sensitivities,
@@ -360,8 +363,9 @@ class System(_native.System):
         import numpy as np
 
         state = None if y0 is None else np.asarray(y0, dtype=float).ravel().tolist()
-        outcome = self._integrate(wished, state, bool(estimate), None if verify is None else bool(verify))
-        motion = Motion(self, wished, state, outcome)
+        given = [(name, course(name, one)) for name, one in (inputs or {}).items()]
+        outcome = self._integrate(wished, state, bool(estimate), None if verify is None else bool(verify), given)
+        motion = Motion(self, self._driven(inputs or {}), wished, state, outcome)
         if outcome["error"] is not None:
             raise IntegrationError(outcome["error"], motion)
         return motion

@@ -68,9 +68,14 @@ class Motion(Mapping[str, "Floats"]):
     """
 
     def __init__(
-        self, system: SystemLike, wished: dict[str, Any], start: list[float] | None, outcome: _native._Outcome
+        self,
+        system: SystemLike,
+        settings: dict[str, Any],
+        wished: dict[str, Any],
+        start: list[float] | None,
+        outcome: _native._Outcome,
     ) -> None:
-        self._origin = (system.model, system.form, system.settings())
+        self._origin = (system.model, system.form, settings)
         self._system: Any = None
         self._kinds = {kind: tuple(names) for kind, names in outcome["kinds"].items()}
         self._keeps_energy = outcome["keeps_energy"]
