@@ -164,7 +164,6 @@ impl SystemCore {
     /// The motion that is wished, and what is said of it. The first one is compared with a second derivation unless `verify` says
     /// otherwise of this one. `inputs` are those of this motion alone.
     #[pyo3(name = "_integrate")]
-    #[expect(clippy::too_many_arguments, reason = "those of Python")]
     fn integrate<'py>(
         &self,
         py: Python<'py>,
