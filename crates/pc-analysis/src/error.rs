@@ -43,6 +43,12 @@ pub enum AnalysisError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
+    /// The rates also vanish at other values nearby, so that the values are not determined.
+    #[error("{} may change while the rates still vanish, so that nothing determines them", quoted(names))]
+    Undetermined {
+        /// The names of the values that are not determined.
+        names: Vec<String>,
+    },
     /// A name was given that no component of the state has.
     #[error("the state has no component `{name}`; it has {}", known.join(", "))]
     UnknownComponent {

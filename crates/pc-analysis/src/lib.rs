@@ -211,6 +211,7 @@ pub use linear::linearizer::{Leaf, Linearizer};
 pub use linear::modes::Mode;
 pub use linear::root_locus::{BranchCount, RootLocus};
 pub use linear::second_order::{NoSecondOrder, SecondOrder};
+pub use linear::trim::Trim;
 pub use measures::invariant_measure::{InvariantMeasure, divergence, invariant_measure};
 pub use measures::phase_measure::{MeasureSearch, PhaseMeasure};
 pub use measures::reducing_multiplier::ReducingMultiplier;

@@ -67,7 +67,7 @@ pub use flow::prototype::Prototype;
 pub use flow::tolerances::{ORDINARY_TOLERANCE, absolute_tolerances};
 pub use model::builtin::{BUILTIN, Builtin, CLASSICS, TREES};
 pub use model::given::GivenQuasiVelocity;
-pub use model::model::{Model, UnknownIntegral, UnknownParameter};
+pub use model::model::{GivenInput, Model, UnknownInput, UnknownIntegral, UnknownParameter};
 pub use model::start_values::{UnknownStart, UnknownValue};
 pub use model::tags::{TAGS, Tag};
 pub use variables::Variables;

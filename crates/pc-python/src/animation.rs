@@ -80,6 +80,7 @@ fn drawn(panel: Panel) -> Drawn {
 #[pymethods]
 impl SystemCore {
     /// The page of a motion; `None` if there is nothing to be drawn.
+    #[pyo3(name = "_animation_page")]
     fn animation_page(&self, py: Python<'_>, recorded: Recorded) -> PyResult<Option<String>> {
         let record = Recording::from(recorded);
         self.derive(py, move |model| {
@@ -91,6 +92,7 @@ impl SystemCore {
     }
 
     /// The page of the model, with a motion if there is one.
+    #[pyo3(name = "_report_page")]
     fn report_page(&self, py: Python<'_>, recorded: Option<Recorded>) -> PyResult<String> {
         let record = recorded.map(Recording::from);
         self.derive(py, move |model| model.derived(|assembly| Ok(report(model, assembly, record.as_ref())?)))

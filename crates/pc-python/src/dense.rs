@@ -43,6 +43,7 @@ impl DenseCore {
 #[pymethods]
 impl SystemCore {
     /// The motion from a state at the start to `end`, or to a terminal event before that.
+    #[pyo3(name = "_dense")]
     fn dense(&self, py: Python<'_>, end: f64, start: Vec<f64>, wished: Wished) -> PyResult<DenseCore> {
         let (mut model, derived) = self.now();
         let cancel = renewed(&mut model);

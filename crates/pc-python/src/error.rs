@@ -3,11 +3,12 @@
 use std::error::Error as _;
 
 use pc_fmu::FmuError;
-use pc_mech::{Failure, MechError};
+use pc_mech::{Failure, MechError, TableError};
 use pc_model::import::UrdfError;
-use pc_model::{ModelError, UnknownIntegral, UnknownParameter, UnknownStart};
+use pc_model::{ModelError, UnknownInput, UnknownIntegral, UnknownParameter, UnknownStart};
 use pc_report::ReportError;
 use pc_run::files::error::FileError;
+use pc_run::linear::error::LinearError;
 use pc_run::sweep::error::SweepError;
 use pc_run::{RunError, chain};
 use pc_solve::{InputError, SolveError};
@@ -17,6 +18,8 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyType;
 
+use crate::notation::in_python;
+
 /// What can go wrong below Python.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
@@ -24,6 +27,10 @@ pub(crate) enum Error {
     Model(#[from] ModelError),
     #[error(transparent)]
     Parameter(#[from] UnknownParameter),
+    #[error(transparent)]
+    InputName(#[from] UnknownInput),
+    #[error("the input `{name}`: {error}")]
+    Table { name: String, error: TableError },
     #[error(transparent)]
     Start(#[from] UnknownStart),
     #[error(transparent)]
@@ -60,6 +67,8 @@ pub(crate) enum Error {
     Unsupported { what: &'static str, why: &'static str },
     #[error("the state is off the constraints: the nearest one on them differs by {moved:e}")]
     OffConstraints { moved: f64 },
+    #[error("limit_time is {seconds}; give seconds, 0 or more")]
+    LimitTime { seconds: f64 },
     #[error("another thread is setting values of this system")]
     Busy,
     #[error("`{name}({first}, {second})` is not a valid distribution")]
@@ -84,24 +93,27 @@ fn class<'py>(py: Python<'py>, name: &'static str) -> PyResult<Bound<'py, PyType
     Ok(module.bind(py).getattr(name)?.cast_into::<PyType>()?)
 }
 
-fn raised(py: Python<'_>, name: &'static str, message: String) -> PyErr {
-    match class(py, name).and_then(|class| class.call1((message,))) {
+fn raised(py: Python<'_>, name: &'static str, message: &str) -> PyErr {
+    match class(py, name).and_then(|class| class.call1((in_python(message),))) {
         Ok(exception) => PyErr::from_value(exception),
         Err(error) => error,
     }
 }
 
+fn invalid(message: &str) -> PyErr {
+    PyValueError::new_err(in_python(message))
+}
+
 /// The exception for an error in a model, with entry, line, column and help as attributes.
 fn of_model(py: Python<'_>, error: &ModelError) -> PyErr {
     let (diagnostic, position) = (error.diagnostic(), error.position());
-    let arguments = (
-        error.to_string(),
-        &diagnostic.message,
-        &diagnostic.place.entry,
-        position.line,
-        position.column,
-        diagnostic.help.as_deref(),
-    );
+    // The line of the text, which is quoted between them, stays as it is.
+    let (mut text, help) = (error.to_string(), diagnostic.help.as_deref().map(in_python));
+    if let (Some(written), Some(help)) = (&diagnostic.help, &help) {
+        text = text.replace(written, help);
+    }
+    let arguments =
+        (text, &diagnostic.message, &diagnostic.place.entry, position.line, position.column, help);
     match class(py, "ModelError").and_then(|class| class.call1(arguments)) {
         Ok(exception) => PyErr::from_value(exception),
         Err(error) => error,
@@ -112,16 +124,36 @@ fn of_model(py: Python<'_>, error: &ModelError) -> PyErr {
 fn of_run(py: Python<'_>, error: &RunError) -> PyErr {
     match error {
         RunError::Model(error) => of_model(py, error),
+        RunError::Linear(error) => of_linear(py, error),
         RunError::Verify(error) => match &**error {
             VerifyError::Model(error) => of_model(py, error),
-            VerifyError::Disagreement(_) => raised(py, "DisagreementError", error.to_string()),
-            _ => raised(py, "ChetaevError", chain(error.as_ref())),
+            VerifyError::Disagreement(_) => raised(py, "DisagreementError", &error.to_string()),
+            _ => raised(py, "ChetaevError", &chain(error.as_ref())),
         },
-        RunError::Tolerance(unknown) => raised(py, "UnknownNameError", unknown.to_string()),
-        RunError::Sensitivities(unknown) => raised(py, "UnknownNameError", unknown.to_string()),
-        RunError::NoEnd { .. } => PyValueError::new_err("the text says no end of time: give t_end"),
-        RunError::EndIsStart { t } => PyValueError::new_err(format!("the end t = {t} is the start")),
-        other => raised(py, "ChetaevError", chain(other)),
+        RunError::Tolerance(unknown) => raised(py, "UnknownNameError", &unknown.to_string()),
+        RunError::Sensitivities(unknown) => raised(py, "UnknownNameError", &unknown.to_string()),
+        RunError::NoEnd { .. } => invalid("the text says no end of time: give t_end"),
+        RunError::EndIsStart { t } => invalid(&format!("the end t = {t} is the start")),
+        RunError::Rows { rows, numbers, bytes, limit } => {
+            let [bytes, limit] = [bytes, limit].map(|bytes| bytes.div_ceil(1 << 20));
+            let message = format!(
+                "{rows} rows of {numbers} numbers would take {bytes} MiB, more than the limit of {limit} MiB; ask for fewer, or give \
+                 the system a larger `limit_memory`"
+            );
+            raised(py, "ChetaevError", &message)
+        }
+        RunError::Integration { .. } => raised(py, "IntegrationError", &chain(error)),
+        other => raised(py, "ChetaevError", &chain(other)),
+    }
+}
+
+fn of_linear(py: Python<'_>, error: &LinearError) -> PyErr {
+    match error {
+        LinearError::Varied(unknown) => raised(py, "UnknownNameError", &unknown.to_string()),
+        LinearError::Component { .. } | LinearError::Free { .. } => {
+            raised(py, "UnknownNameError", &error.to_string())
+        }
+        other => raised(py, "ChetaevError", &chain(other)),
     }
 }
 
@@ -131,37 +163,41 @@ impl From<Error> for PyErr {
             Error::Model(error) | Error::Verify(VerifyError::Model(error)) => of_model(py, error),
             Error::Report(report) => match report.source().and_then(|error| error.downcast_ref()) {
                 Some(error) => of_model(py, error),
-                None => raised(py, "ChetaevError", chain(report)),
+                None => raised(py, "ChetaevError", &chain(report)),
             },
-            Error::Parameter(_) | Error::Start(_) | Error::Integral(_) => {
-                raised(py, "UnknownNameError", error.to_string())
+            Error::Parameter(_) | Error::InputName(_) | Error::Start(_) | Error::Integral(_) => {
+                raised(py, "UnknownNameError", &error.to_string())
             }
-            Error::Verify(VerifyError::Disagreement(_)) => raised(py, "DisagreementError", error.to_string()),
-            Error::Mech(_) | Error::Failure(_) => raised(py, "EvaluationError", chain(&error)),
+            Error::Verify(VerifyError::Disagreement(_)) => {
+                raised(py, "DisagreementError", &error.to_string())
+            }
+            Error::Mech(_) | Error::Failure(_) => raised(py, "EvaluationError", &chain(&error)),
             Error::Solve(SolveError::Integration(_) | SolveError::Setup { .. }) => {
-                raised(py, "IntegrationError", chain(&error))
+                raised(py, "IntegrationError", &chain(&error))
             }
             Error::Verify(_) | Error::Unsupported { .. } | Error::Busy => {
-                raised(py, "ChetaevError", chain(&error))
+                raised(py, "ChetaevError", &chain(&error))
             }
             Error::Choice { .. }
+            | Error::Table { .. }
             | Error::Length { .. }
             | Error::NotFinite { .. }
             | Error::Law { .. }
             | Error::OffConstraints { .. }
+            | Error::LimitTime { .. }
             | Error::Solve(SolveError::Input(_))
-            | Error::Input(_) => PyValueError::new_err(chain(&error)),
+            | Error::Input(_) => invalid(&chain(&error)),
             Error::Sweep(SweepError::UnknownValue(unknown)) => {
-                raised(py, "UnknownNameError", unknown.to_string())
+                raised(py, "UnknownNameError", &unknown.to_string())
             }
             Error::Run(error) => of_run(py, error),
             Error::File(error) => PyOSError::new_err(chain(error)),
-            Error::Urdf(_) | Error::Fmu(_) => raised(py, "ChetaevError", chain(&error)),
+            Error::Urdf(_) | Error::Fmu(_) => raised(py, "ChetaevError", &chain(&error)),
             Error::Sweep(SweepError::Ended { done, members, limit }) => {
-                raised(py, "IntegrationError", format!("ended after {done} of {members} members: {limit}"))
+                raised(py, "IntegrationError", &format!("ended after {done} of {members} members: {limit}"))
             }
-            Error::Sweep(_) | Error::Panic { .. } => PyRuntimeError::new_err(chain(&error)),
-            Error::Solve(_) => raised(py, "IntegrationError", chain(&error)),
+            Error::Sweep(_) | Error::Panic { .. } => PyRuntimeError::new_err(in_python(&chain(&error))),
+            Error::Solve(_) => raised(py, "IntegrationError", &chain(&error)),
         })
     }
 }

@@ -5,6 +5,7 @@ use pc_run::linear::found::{Found, Search};
 use pc_run::linear::linearized::Linearized;
 use pc_run::linear::locus::Locus;
 use pc_run::linear::state::{At, Cyclic, StateChoice};
+use pc_run::linear::trim::Trimmed;
 use pc_run::observer::Nobody;
 use pc_run::sweep::values::{Values, Vary};
 use pyo3::prelude::*;
@@ -76,6 +77,14 @@ impl ModelCore {
         self.found(py, move |model, verify| {
             let locus = Locus::of(model, &vary, &choice, verify, &Nobody)?;
             Ok((locus.text(), locus.json().to_string()))
+        })
+    }
+
+    /// The state and the inputs at rest or in steady motion with some of them free, as text and JSON.
+    fn trimmed(&self, py: Python<'_>, free: Vec<String>) -> PyResult<(String, String)> {
+        self.found(py, move |model, verify| {
+            let trimmed = Trimmed::of(model, &free, verify, &Nobody)?;
+            Ok((trimmed.text(), trimmed.json().to_string()))
         })
     }
 

@@ -13,6 +13,7 @@ use crate::task::attended;
 #[pymethods]
 impl SystemCore {
     /// The largest exponents, and their means after each interval, one after the other.
+    #[pyo3(name = "_exponents")]
     fn exponents(
         &self,
         py: Python<'_>,

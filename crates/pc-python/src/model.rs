@@ -1,12 +1,11 @@
 //! A model, and what is printed of it.
 
 use std::collections::HashMap;
-use std::time::Duration;
 
 use pc_expr::{Cancel, Limits};
-use pc_mech::{EmitOptions, Language};
+use pc_mech::{EmitOptions, Interpolation, Language, Table};
 use pc_model::document::AbsoluteTolerance;
-use pc_model::{Assembly, Builtin, Document, Model, Variables, deep};
+use pc_model::{Assembly, Builtin, Document, GivenInput, Model, Variables, deep};
 use pc_print::{Form, Layout, Page, Theory, TheoryOptions, displayed_equations, page};
 use pc_run::motion::verification::checked;
 use pc_verify::{Outlet, VerifyError, vouch};
@@ -14,6 +13,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::Error;
+use crate::plan::limit;
 use crate::task::attended;
 
 /// A model with the values of its parameters and start, and the settings of its derivation; it never changes.
@@ -28,6 +28,7 @@ pub(crate) struct ModelCore {
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Changes {
+    inputs: Vec<(String, Course)>,
     parameters: Vec<(String, f64)>,
     start: Vec<(String, f64)>,
     project_start: bool,
@@ -39,6 +40,36 @@ pub(crate) struct Changes {
     limit_memory: Option<u64>,
     limit_time: Option<f64>,
     verify: bool,
+}
+
+/// What an input is given: a number, or times, values and the interpolation between them.
+#[derive(FromPyObject)]
+pub(crate) enum Course {
+    Constant(f64),
+    Table(Vec<f64>, Vec<f64>, String),
+}
+
+impl Course {
+    /// What the input of this name is given.
+    pub(crate) fn given(self, name: &str) -> Result<GivenInput, Error> {
+        match self {
+            Course::Constant(value) => Ok(GivenInput::Constant(finite(name, value)?)),
+            Course::Table(times, values, interpolation) => {
+                let interpolation = match interpolation.as_str() {
+                    "linear" => Interpolation::Linear,
+                    "cubic" => Interpolation::Cubic,
+                    "hold" => Interpolation::Hold,
+                    _ => {
+                        let known = vec!["linear", "cubic", "hold"];
+                        return Err(Error::Choice { what: "the interpolation", given: interpolation, known });
+                    }
+                };
+                let table = Table::new(times, values, interpolation);
+                let table = table.map_err(|error| Error::Table { name: name.to_owned(), error })?;
+                Ok(GivenInput::Table(table))
+            }
+        }
+    }
 }
 
 /// The form of this name.
@@ -146,14 +177,12 @@ impl ModelCore {
         let limits = Limits::default();
         model.limit(Limits {
             memory: changes.limit_memory.unwrap_or(limits.memory),
-            time: match changes.limit_time {
-                None => None,
-                Some(seconds) => Some(Duration::try_from_secs_f64(seconds).map_err(|_| {
-                    Error::NotFinite { what: "the limit of time".to_owned(), value: seconds }
-                })?),
-            },
+            time: limit(changes.limit_time)?,
             ..limits
         });
+        for (name, course) in changes.inputs {
+            model.give_input(&name, course.given(&name)?)?;
+        }
         for (name, value) in &changes.parameters {
             model.set(name, finite(name, *value)?)?;
         }
@@ -198,6 +227,22 @@ impl ModelCore {
     /// Names and values of the parameters, then of the inputs.
     fn parameters(&self) -> Vec<(String, f64)> {
         self.model.parameters().map(|(name, value)| (name.to_owned(), value)).collect()
+    }
+
+    /// Names of the parameters and inputs that are numbers alone: they follow neither others nor a table, and no others follow them.
+    fn numbers(&self) -> Vec<&str> {
+        let values = self.model.parameter_values();
+        let is_alone = |place: usize, value: f64| {
+            let mut moved = values.clone();
+            moved.set(place, value + value.abs().max(1.0));
+            let others = moved.values().iter().zip(values.values()).enumerate();
+            others.into_iter().all(|(i, (moved, held))| i == place || moved == held)
+        };
+        let names = self.model.parameters().enumerate();
+        let names = names.filter(|&(place, (_, value))| {
+            !values.follows(place) && !values.is_table(place) && is_alone(place, value)
+        });
+        names.map(|(_, (name, _))| name).collect()
     }
 
     /// Names of the inputs.

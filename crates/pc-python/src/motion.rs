@@ -6,7 +6,8 @@ use std::sync::atomic::Ordering;
 use numpy::PyArray1;
 use numpy::prelude::*;
 use pc_expr::VectorField;
-use pc_model::{Flow, deep};
+use pc_model::{Flow, Model, deep};
+use pc_run::motion::derived::Derived;
 use pc_run::motion::integrate::Besides;
 use pc_run::motion::run::{Ending, Run};
 use pc_run::motion::table::Table;
@@ -17,9 +18,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::Error;
-use crate::model::renewed;
+use crate::model::{Course, renewed};
+use crate::notation::in_python;
 use crate::plan::Wished;
-use crate::system::SystemCore;
+use crate::system::{Inventory, SystemCore};
 use crate::task::attended;
 
 /// The fraction of its size by which a state may be off the constraints: the first step removes anything
@@ -74,11 +76,11 @@ fn ending(run: &Run) -> (&'static str, Option<String>) {
 /// Why the run did not reach its end, or is wrong.
 fn error(run: &Run) -> Option<String> {
     if let Some(lost) = &run.lost {
-        return Some(RunError::Lost(lost.clone()).to_string());
+        return Some(in_python(&RunError::Lost(lost.clone()).to_string()));
     }
     match &run.ending {
-        Ending::Failed(error) => Some(chain(error.as_ref())),
-        _ => run.stopped().map(|stopped| stopped.to_string()),
+        Ending::Failed(error) => Some(in_python(&chain(error.as_ref()))),
+        _ => run.stopped().map(|stopped| in_python(&stopped.to_string())),
     }
 }
 
@@ -99,7 +101,8 @@ fn kinds<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound<'py, PyDict>> {
     Ok(kinds)
 }
 
-fn into_dict(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
+/// `kept` are the values at the start of what should stay constant.
+fn into_dict(py: Python<'_>, run: Run, kept: Vec<f64>) -> PyResult<Bound<'_, PyDict>> {
     let (rows, width) = (run.table.len(), run.table.columns().len() - 1);
     let result = PyDict::new(py);
     let (ending, event) = ending(&run);
@@ -114,6 +117,7 @@ fn into_dict(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
     result.set_item("columns", &run.table.columns()[1..])?;
     result.set_item("kinds", kinds(py, &run.table)?)?;
     result.set_item("keeps_energy", run.keeps_energy)?;
+    result.set_item("conserved_at_start", kept)?;
     let occurrences = run.occurrences.into_iter().map(|occurrence| {
         let Occurrence { event, time, state_before, state_after } = occurrence;
         let name = run.events.get(event).cloned().unwrap_or_default();
@@ -125,10 +129,42 @@ fn into_dict(py: Python<'_>, run: Run) -> PyResult<Bound<'_, PyDict>> {
     Ok(result)
 }
 
+impl SystemCore {
+    /// The model with the values as they are now and its equations, both with these inputs.
+    fn driven(&self, py: Python<'_>, inputs: Vec<(String, Course)>) -> PyResult<(Model, Derived)> {
+        let (mut model, derived) = self.now();
+        if inputs.is_empty() {
+            return Ok((model, derived));
+        }
+        let tables = |model: &Model| -> Vec<usize> {
+            model.parameter_values().tables().iter().map(|&(place, _)| place).collect()
+        };
+        let (before, mut is_other) = (tables(&model), false);
+        for (name, course) in inputs {
+            is_other |= matches!(course, Course::Table(..));
+            model.give_input(&name, course.given(&name)?).map_err(Error::from)?;
+        }
+        is_other |= tables(&model) != before;
+        let cancel = renewed(&mut model);
+        let (variables, t_start, known) = (self.variables, self.inventory.t_start, model.clone());
+        let work = move || {
+            deep(|| {
+                if !is_other {
+                    return Ok(derived.renewed(&known, variables, t_start)?);
+                }
+                let graph = known.graph();
+                Ok(Derived::of(&known, &known.assemble(&graph)?, variables)?)
+            })
+        };
+        Ok((model, attended(py, &cancel, |_| Ok(()), work)?))
+    }
+}
+
 #[pymethods]
 impl SystemCore {
-    /// The requested motion, and its summary. The first motion of a system is compared with a second derivation, and
-    /// any other is not, unless `verify` says otherwise.
+    /// The requested motion, and its summary. The first motion of a system is compared with a second derivation, and any other is
+    /// not, unless `verify` says otherwise. `inputs` replaces the inputs for this motion alone.
+    #[pyo3(name = "_integrate")]
     fn integrate<'py>(
         &self,
         py: Python<'py>,
@@ -136,13 +172,17 @@ impl SystemCore {
         start: Option<Vec<f64>>,
         estimate: bool,
         verify: Option<bool>,
+        inputs: Vec<(String, Course)>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (mut model, mut derived) = self.now();
+        let (mut model, mut derived) = self.driven(py, inputs)?;
         if let Some(start) = start {
             self.check_length(start.len())?;
             on_constraints(&mut derived.flow, self.inventory.t_start, &start)?;
             derived.flow.start = start;
         }
+        let Inventory { t_start, shown, conserved, .. } = &self.inventory;
+        let start = derived.flow.start.clone();
+        let kept = derived.flow.row(*t_start, &start)[*shown..][..*conserved].to_vec();
         let cancel = renewed(&mut model);
         let plan = wished.plan(&model, self.variables, &cancel)?;
         let verify =
@@ -165,9 +205,9 @@ impl SystemCore {
             && matches!(**error, SolveError::Input(_))
         {
             let begun = std::mem::replace(&mut run.ending, Ending::Interrupted);
-            let Ending::Failed(error) = begun else { return into_dict(py, run) };
+            let Ending::Failed(error) = begun else { return into_dict(py, run, kept) };
             return Err(Error::from(*error).into());
         }
-        into_dict(py, run)
+        into_dict(py, run, kept)
     }
 }

@@ -76,7 +76,7 @@ impl Wished {
             method: method.transpose()?,
             sensitivities: self.sensitivities.clone(),
         };
-        let time = self.limit_time.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+        let time = limit(self.limit_time)?;
         let limits = Limits { cancel: cancel.clone(), time, ..Limits::default() };
         Ok(Plan { deadline: Deadline::new(&limits), ..Plan::of(model, &wishes)? })
     }
@@ -84,6 +84,20 @@ impl Wished {
     /// Whether there are derivatives with respect to parameters.
     pub(crate) fn differentiates(&self) -> bool {
         !self.sensitivities.is_empty()
+    }
+}
+
+/// The limit on time of this many seconds; none for `None` and infinity.
+///
+/// # Errors
+/// [`Error::LimitTime`] for a negative number, or one that is too large.
+pub(crate) fn limit(seconds: Option<f64>) -> Result<Option<Duration>, Error> {
+    match seconds {
+        None | Some(f64::INFINITY) => Ok(None),
+        Some(seconds) => match Duration::try_from_secs_f64(seconds) {
+            Ok(time) => Ok(Some(time)),
+            Err(_) => Err(Error::LimitTime { seconds }),
+        },
     }
 }
 

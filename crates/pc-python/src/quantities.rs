@@ -39,6 +39,7 @@ impl Function {
 #[pymethods]
 impl SystemCore {
     /// Coordinates, quasi-velocities, first-order states and observables: one row of a motion.
+    #[pyo3(name = "_row")]
     fn row<'py>(&self, t: &Bound<'py, PyAny>, y: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let evaluate = |flow: &mut Flow, t: f64, y: &[f64], values: &mut [f64]| {
             values.copy_from_slice(&flow.row(t, y));
@@ -60,6 +61,7 @@ impl SystemCore {
     }
 
     /// M = ∂²L/∂η∂η at a state: its size, and its entries row by row.
+    #[pyo3(name = "_mass_entries")]
     fn mass_entries(&self, py: Python<'_>, t: f64, y: Vec<f64>) -> PyResult<(usize, Vec<f64>)> {
         self.check_length(y.len())?;
         let missing = self.mass.lock().unwrap_or_else(PoisonError::into_inner).is_none();
@@ -80,6 +82,7 @@ impl SystemCore {
     }
 
     /// The Poisson bracket of two expressions of the model.
+    #[pyo3(name = "_poisson_bracket")]
     fn poisson_bracket(slf: &Bound<'_, SystemCore>, f: String, g: String) -> PyResult<Function> {
         let system = slf.get();
         let variables = system.variables;

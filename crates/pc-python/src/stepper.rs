@@ -17,7 +17,7 @@ use crate::system::SystemCore;
 /// A motion that is integrated from one time of a controller to the next, with inputs that are constant between them.
 ///
 /// It is made by `System.stepper`.
-#[pyclass(frozen, module = "chetaev._native")]
+#[pyclass(frozen, module = "chetaev")]
 pub(crate) struct Stepper(Mutex<Walk>);
 
 /// The current point of a motion.
@@ -147,6 +147,7 @@ impl Walk {
 #[pymethods]
 impl SystemCore {
     /// A motion from the start, step by step; tolerances are scaled for a step of this length.
+    #[pyo3(name = "_stepping")]
     fn stepping(&self, wished: Wished) -> PyResult<Stepper> {
         let (mut model, derived) = self.now();
         let cancel = renewed(&mut model);
@@ -157,7 +158,7 @@ impl SystemCore {
         let document = model.document();
         let places = document.parameters.len()..document.parameters.len() + document.inputs.len();
         if places.clone().any(|place| tables.contains(&place)) {
-            let why = "an input follows a table, which a step would not change";
+            let why = "an input follows a table, which a step would not change; give it a number by `inputs` of the system";
             return Err(Error::Unsupported { what: "a stepper", why }.into());
         }
         let parameters = model.parameters().map(|(_, value)| value).collect();

@@ -73,6 +73,7 @@ impl SystemCore {
     /// how many are done. If the sweep is to be verified, the first member, one in the middle and the last are compared with a second
     /// derivation.
     #[expect(clippy::too_many_arguments, reason = "those of Python")]
+    #[pyo3(name = "_ensemble")]
     fn ensemble<'py>(
         &self,
         py: Python<'py>,

@@ -3,7 +3,6 @@
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 
-use pc_expr::Events;
 use pc_model::{Flow, Model, Variables, deep};
 use pc_run::motion::derived::Derived;
 use pc_verify::Outlet;
@@ -15,7 +14,7 @@ use crate::model::{ModelCore, finite, renewed, variables, vouched};
 use crate::task::attended;
 
 /// The equations ẏ = f(t, y) of a model. Any number of threads may use it.
-#[pyclass(frozen, subclass, module = "chetaev._native")]
+#[pyclass(frozen, subclass, name = "System", module = "chetaev._native")]
 pub(crate) struct SystemCore {
     pub(crate) variables: Variables,
     pub(crate) inventory: Inventory,
@@ -137,46 +136,37 @@ impl SystemCore {
     }
 
     /// Names of the components of a state.
-    #[getter]
+    #[getter(_state_names)]
     fn state_names(&self) -> Vec<String> {
         self.inventory.names.clone()
     }
 
     /// Names of the columns of a motion, without t.
-    #[getter]
+    #[getter(_column_names)]
     fn column_names(&self) -> Vec<String> {
         self.inventory.columns.clone()
     }
 
-    /// Names of the constraints that are kept by projection.
-    #[getter]
-    fn constraint_names(&self) -> Vec<String> {
-        self.state().derived.flow.constraint_names()
-    }
-
-    /// Names of the events.
-    #[getter]
-    fn event_names(&self) -> Vec<String> {
-        self.state().derived.flow.events.events().iter().map(|event| event.name().to_owned()).collect()
-    }
-
     /// The time at the start.
-    #[getter]
+    #[getter(_t_start)]
     fn t_start(&self) -> f64 {
         self.inventory.t_start
     }
 
     /// The state at the start.
+    #[pyo3(name = "_start_state")]
     fn start_state(&self) -> Vec<f64> {
         self.state().derived.flow.start.clone()
     }
 
     /// The model with the values as they are now.
+    #[pyo3(name = "_model_now")]
     fn model_now(&self) -> ModelCore {
         ModelCore { model: self.state().model.clone(), verify: self.inventory.verify }
     }
 
     /// Gives parameters and start new values: all of them, or none if that fails.
+    #[pyo3(name = "_update")]
     fn update(
         &self,
         py: Python<'_>,

@@ -78,7 +78,7 @@ pub struct Linearizer {
     depends_on_time: bool,
     names_time: bool,
     /// The names of the inputs and their indices among the parameters.
-    inputs: Vec<(String, usize)>,
+    pub(super) inputs: Vec<(String, usize)>,
     outputs: Vec<String>,
     /// The position constraints, the kept functions and the conditions on velocities, then their slopes.
     surface: Evaluator,

@@ -205,7 +205,7 @@ const FARTHER: f64 = 1e-2;
 const AS_THERE: f64 = 1e-3;
 
 /// Checks that the slopes of the rates are continuous at the state.
-fn check_smooth(
+pub(crate) fn check_smooth(
     motion: &mut Motion,
     t: f64,
     state: &[f64],

@@ -110,6 +110,16 @@ impl Parameters {
         self.follow();
     }
 
+    /// Makes parameter number `place` follow a table from `t_start` on, instead of its present value.
+    ///
+    /// # Panics
+    /// If there is no such parameter.
+    pub(crate) fn set_table(&mut self, place: usize, table: Table, t_start: f64) {
+        self.values[place] = table.at(t_start).unwrap_or(f64::NAN);
+        self.formulas[place] = Formula::Table(Arc::new(table));
+        self.follow();
+    }
+
     /// Sets all values, which replace the expressions. Tables stay in use.
     ///
     /// # Panics

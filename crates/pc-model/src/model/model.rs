@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use pc_expr::{Budget, Graph, Limits};
+use pc_mech::Table;
 
 use crate::assembly::parameters::Parameters;
 use crate::diagnostics::source::Place;
@@ -42,6 +43,25 @@ pub struct UnknownParameter {
     /// The requested name.
     pub name: String,
     /// The existing parameters.
+    pub known: Vec<String>,
+}
+
+/// What an input is given in place of its value in the document.
+#[derive(Clone, Debug, PartialEq)]
+pub enum GivenInput {
+    /// A number, constant until it is set.
+    Constant(f64),
+    /// A function of time.
+    Table(Table),
+}
+
+/// A name that is not an input of the model.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{name}` is not an input of this model; its inputs are {}", if known.is_empty() { "none".to_owned() } else { known.join(", ") })]
+pub struct UnknownInput {
+    /// The name asked for.
+    pub name: String,
+    /// The inputs there are.
     pub known: Vec<String>,
 }
 
@@ -123,6 +143,27 @@ impl Model {
             return Err(UnknownParameter { name: name.to_owned(), known: self.parameter_names() });
         };
         self.parameters.set(index, value);
+        Ok(())
+    }
+
+    /// Gives an input a number or a table, whichever of the two it has in the document. A table has to begin at the start of
+    /// the motion or before, which the derivation checks.
+    ///
+    /// # Errors
+    /// [`UnknownInput`] with the inputs there are.
+    pub fn give_input(&mut self, name: &str, given: GivenInput) -> Result<(), UnknownInput> {
+        let names = || self.document.inputs.iter().map(|input| input.name.text.as_str());
+        let Some(index) = names().position(|known| known == name) else {
+            return Err(UnknownInput { name: name.to_owned(), known: names().map(str::to_owned).collect() });
+        };
+        let place = self.document.parameters.len() + index;
+        match given {
+            GivenInput::Constant(value) => self.parameters.set(place, value),
+            GivenInput::Table(table) => {
+                let t_start = self.document.simulation.start_time();
+                self.parameters.set_table(place, table, t_start);
+            }
+        }
         Ok(())
     }
 

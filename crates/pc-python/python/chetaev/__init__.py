@@ -71,12 +71,12 @@ from chetaev._language.joints import (
     Spherical,
     Universal,
 )
-from chetaev._results.linear import Equilibria, Equilibrium, Linearization, RootLocus
+from chetaev._results.linear import Equilibria, Equilibrium, Linearization, RootLocus, Trim
 from chetaev._model import Model
 from chetaev._results.motion import Motion, Occurrence
 from chetaev._native import Stepper, __version__
 from chetaev._results.printed import Check, Equations, Page, Theory
-from chetaev._results.quantities import Bracket, Lyapunov
+from chetaev._results.quantities import Bracket, Gradient, Lyapunov
 from chetaev._results.sweep import Sweep
 from chetaev._system import System
 
@@ -96,6 +96,7 @@ __all__ = [
     "Expression",
     "Fixed",
     "Free",
+    "Gradient",
     "IntegrationError",
     "Joint",
     "Linearization",
@@ -115,6 +116,7 @@ __all__ = [
     "Sweep",
     "System",
     "Theory",
+    "Trim",
     "Universal",
     "UnknownNameError",
     "__version__",

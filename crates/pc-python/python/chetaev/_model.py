@@ -5,13 +5,15 @@ from __future__ import annotations
 import json
 import os
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
 from chetaev import _native
+from chetaev._language.arguments import listed, only, real, reals, whole
 from chetaev._language.builder import Builder
 from chetaev._language.errors import UnknownNameError
+from chetaev._language.inputs import course
 from chetaev._results.linear import Equilibria, Linearization, RootLocus
 from chetaev._results.printed import Check, Equations, Theory
 from chetaev._system import System
@@ -21,38 +23,35 @@ from chetaev._system import System
 FORMS = ("poincare", "canonical", "lagrange", "voronets", "reduced", "lie-poisson", "orthonormal", "hamel")
 
 
-def changes(
-    *,
-    parameters: Mapping[str, float] | None = None,
-    start: Mapping[str, float] | None = None,
-    project_start: bool = False,
-    hold: Sequence[str] = (),
-    project: Sequence[str] = (),
-    velocities: Mapping[str, object] | None = None,
-    independent: Sequence[str] = (),
-    reactions: bool = False,
-    limit_memory: int | None = None,
-    limit_time: float | None = None,
-    verify: bool = True,
-) -> dict[str, Any]:
-    """The changes to a model before it is derived, in the form that the native part takes."""
-    return {
-        "parameters": [(name, float(value)) for name, value in (parameters or {}).items()],
-        "start": [(name, float(value)) for name, value in (start or {}).items()],
-        "project_start": project_start,
-        "hold": list(hold),
-        "project": list(project),
-        "velocities": [(name, str(value)) for name, value in (velocities or {}).items()],
-        "independent": list(independent),
-        "reactions": reactions,
-        "limit_memory": limit_memory,
-        "limit_time": limit_time,
-        "verify": verify,
-    }
+#: The changes to a model before it is derived: each with its default, and how it is read.
+_CHANGES: dict[str, tuple[Any, Callable[[str, Any], Any]]] = {
+    "inputs": ({}, lambda _, given: [(name, course(name, one)) for name, one in given.items()]),
+    "parameters": ({}, lambda kind, given: list(reals(kind, given).items())),
+    "start": ({}, lambda kind, given: list(reals(kind, given).items())),
+    "project_start": (False, lambda _, given: bool(given)),
+    "hold": ((), listed),
+    "project": ((), listed),
+    "velocities": ({}, lambda _, given: [(name, str(one)) for name, one in given.items()]),
+    "independent": ((), listed),
+    "reactions": (False, lambda _, given: bool(given)),
+    "limit_memory": (None, lambda name, given: None if given is None else whole(name, given)),
+    "limit_time": (None, lambda name, given: None if given is None else real(name, given)),
+    "verify": (True, lambda _, given: bool(given)),
+}
 
 
-def _state(at: str, hold: Sequence[str], cyclic: str | None) -> dict[str, Any]:
-    return {"at": at, "hold": list(hold), "cyclic": cyclic}
+def changes(call: str, settings: Mapping[str, Any]) -> dict[str, Any]:
+    """The changes to a model before it is derived, in the form that the native part takes; an error names the call."""
+    only(call, settings, _CHANGES)
+    found = {}
+    for name, (default, read) in _CHANGES.items():
+        given = settings.get(name)
+        found[name] = read(name, default if given is None else given)
+    return found
+
+
+def _state(at: str, hold: str | Sequence[str], cyclic: str | None) -> dict[str, Any]:
+    return {"at": at, "hold": listed("hold", hold), "cyclic": cyclic}
 
 
 class Model:
@@ -76,6 +75,8 @@ class Model:
     __slots__ = ("_core", "_text")
 
     def __init__(self, text: str | bytes, name: str = "<text>") -> None:
+        if not isinstance(text, (str, bytes)):
+            raise TypeError(f"the text of a model is str or bytes, not {type(text).__name__}; Model.from_file reads a file")
         self._text = text if isinstance(text, bytes) else text.encode()
         self._core = _native.ModelCore(name, self._text)
 
@@ -195,7 +196,7 @@ class Model:
         >>> check.data["rank"]
         2
         """
-        text, data = self._changed(settings).check()
+        text, data = self._changed("Model.check", settings).check()
         return Check(text, json.loads(data))
 
     def derive(
@@ -227,13 +228,13 @@ class Model:
         """The model of another text, with paths of tables relative to the same file."""
         return Model(text, self.name)
 
-    def _changed(self, settings: Mapping[str, Any]) -> _native.ModelCore:
-        return self._core.changed(changes(**settings))
+    def _changed(self, call: str, settings: Mapping[str, Any]) -> _native.ModelCore:
+        return self._core.changed(changes(call, settings))
 
     def _form(self, form: str | None) -> str:
         return form or self._core.simulation()["form"] or "poincare"
 
-    def theory(self, *, degree: int = 2, functions: Sequence[object] = (), **settings: Any) -> Theory:
+    def theory(self, *, degree: int = 2, functions: object = (), **settings: Any) -> Theory:
         """Brackets, Casimir functions, integrals, steady motions and their stability, Routh's reduction.
 
         Parameters
@@ -245,7 +246,8 @@ class Model:
         **settings
             As for :meth:`system`.
         """
-        return Theory(self, degree, [str(f) for f in functions], settings)
+        several = functions if isinstance(functions, (list, tuple)) else [functions]
+        return Theory(self, degree, [str(f) for f in several], settings)
 
     def fmu(
         self,
@@ -277,7 +279,7 @@ class Model:
         """
         solves = None if solver is None else (solver, step)
         name = os.path.splitext(os.path.basename(os.fspath(path)))[0]
-        core = self._changed(settings)
+        core = self._changed("Model.fmu", settings)
         for remark in core.write_fmu(os.fspath(path), name, version, form or "poincare", solves, compiled):
             warnings.warn(remark, stacklevel=2)
 
@@ -285,7 +287,7 @@ class Model:
         self,
         at: str = "steady",
         *,
-        hold: Sequence[str] = (),
+        hold: str | Sequence[str] = (),
         cyclic: str | None = None,
         **settings: Any,
     ) -> Linearization:
@@ -315,7 +317,7 @@ class Model:
         >>> linear.is_steady
         True
         """
-        return Linearization(*self._changed(settings).linearized(_state(at, hold, cyclic)))
+        return Linearization(*self._changed("Model.linearize", settings).linearized(_state(at, hold, cyclic)))
 
     def root_locus(
         self,
@@ -323,7 +325,7 @@ class Model:
         values: Sequence[float],
         at: str = "steady",
         *,
-        hold: Sequence[str] = (),
+        hold: str | Sequence[str] = (),
         cyclic: str | None = None,
         **settings: Any,
     ) -> RootLocus:
@@ -337,7 +339,7 @@ class Model:
         (5, 4)
         """
         listed = [float(value) for value in values]
-        return RootLocus(*self._changed(settings).locus(name, listed, _state(at, hold, cyclic)))
+        return RootLocus(*self._changed("Model.root_locus", settings).locus(name, listed, _state(at, hold, cyclic)))
 
     def equilibria(
         self, box: Mapping[str, tuple[float, float]] | None = None, *, starts: int = 256, **settings: Any
@@ -361,7 +363,7 @@ class Model:
         [0.0, 3.141593]
         """
         bounds = [(name, float(low), float(high)) for name, (low, high) in (box or {}).items()]
-        return Equilibria(*self._changed(settings).equilibria(bounds, starts))
+        return Equilibria(*self._changed("Model.equilibria", settings).equilibria(bounds, starts))
 
     def system(self, form: str | None = None, **settings: Any) -> System:
         """The equations of motion, compiled.
@@ -373,6 +375,9 @@ class Model:
             text unless given, or else Poincaré's.
         parameters, start : mapping, optional
             Values that replace those of the text; they can also be set later.
+        inputs : mapping, optional
+            Inputs with the values that replace those of the text: a number, or a table ``(times, values)``, which is
+            interpolated linearly, or as a third entry says, ``"linear"``, ``"cubic"`` or ``"hold"``.
         project_start : bool
             Whether the start is moved onto the constraints; ``hold`` names the components that must not be moved.
         project : sequence of str

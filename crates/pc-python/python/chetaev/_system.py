@@ -6,11 +6,14 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from chetaev import _native
+from chetaev._language.arguments import listed, only, real, reals, whole
 from chetaev._language.errors import IntegrationError
 from chetaev._language.events import Event
+from chetaev._language.inputs import course
+from chetaev._results.linear import Trim
 from chetaev._results.motion import Motion
 from chetaev._results.printed import Page
-from chetaev._results.quantities import Bracket, Lyapunov
+from chetaev._results.quantities import Bracket, Gradient, Lyapunov
 from chetaev._results.sweep import Sweep, swept
 from chetaev._results.values import Values
 
@@ -24,7 +27,11 @@ if TYPE_CHECKING:
     Floats = npt.NDArray[np.float64]
 
 
-class System(_native.SystemCore):
+#: The settings that integrations take in addition to a span of time.
+_STEPS = ("method", "rtol", "atol", "max_step", "samples_per_step", "accumulation", "limit_time")
+
+
+class System(_native.System):
     """The compiled equations ẏ = f(t, y) of a model, with parameters and start values that can be set.
 
     ``system(t, y)`` is ẏ, and ``system.jac(t, y)`` its Jacobian, as :func:`scipy.integrate.solve_ivp` takes them. If ``y`` is an array
@@ -51,10 +58,13 @@ class System(_native.SystemCore):
     _companion: System | None
 
     def __new__(cls, model: ModelLike, form: str = "poincare", **settings: Any) -> System:
+        if not hasattr(model, "_changed"):
+            raise TypeError(f"a system is made of a Model, by Model.system(), not of {model!r}")
         settings = {**settings}
-        settings["parameters"] = dict(settings.get("parameters") or {})
-        settings["start"] = dict(settings.get("start") or {})
-        self = super().__new__(cls, model._changed(settings), form)
+        for kind in ("parameters", "start"):
+            settings[kind] = reals(kind, settings.get(kind) or {})
+        settings["inputs"] = dict(settings.get("inputs") or {})
+        self = super().__new__(cls, model._changed("Model.system", settings), form)
         assert isinstance(self, System)
         self._model = model
         self._form = form
@@ -81,24 +91,24 @@ class System(_native.SystemCore):
     @property
     def names(self) -> tuple[str, ...]:
         """The names of the components of a state."""
-        return tuple(self.state_names)
+        return tuple(self._state_names)
 
     @property
     def columns(self) -> tuple[str, ...]:
         """The names of the columns of a motion, without ``t``."""
-        return tuple(self.column_names)
+        return tuple(self._column_names)
 
     @property
     def y0(self) -> Floats:
         """The state at the start."""
         import numpy as np
 
-        return np.array(self.start_state())
+        return np.array(self._start_state())
 
     @property
     def t0(self) -> float:
         """The time at the start."""
-        return self.t_start
+        return self._t_start
 
     @property
     def parameters(self) -> Values:
@@ -125,9 +135,8 @@ class System(_native.SystemCore):
     def _set(
         self, *, parameters: Mapping[str, float] | None = None, start: Mapping[str, float] | None = None
     ) -> None:
-        parameters = {name: float(value) for name, value in (parameters or {}).items()}
-        start = {name: float(value) for name, value in (start or {}).items()}
-        self.update(list(parameters.items()), list(start.items()))
+        parameters, start = reals("parameters", parameters or {}), reals("start", start or {})
+        self._update(list(parameters.items()), list(start.items()))
         self._settings["parameters"].update(parameters)
         self._settings["start"].update(start)
 
@@ -140,13 +149,13 @@ class System(_native.SystemCore):
         >>> sorted(system.observe(0.0, system.y0))[:3]
         ['area', 'energy', 'norm']
         """
-        return dict(zip(self.column_names, self.row(t, y)))
+        return dict(zip(self._column_names, self._row(t, y)))
 
     def mass_matrix(self, t: float, y: npt.ArrayLike) -> Floats:
         """The mass matrix M = ∂²L/∂η∂η of the quasi-velocities at a state."""
         import numpy as np
 
-        size, entries = self.mass_entries(float(t), np.asarray(y, dtype=float).tolist())
+        size, entries = self._mass_entries(float(t), np.asarray(y, dtype=float).tolist())
         return np.array(entries).reshape(size, size)
 
     def reactions(self, t: npt.ArrayLike, y: npt.ArrayLike) -> dict[str, Any]:
@@ -184,6 +193,21 @@ class System(_native.SystemCore):
         """
         return Bracket(self, str(f), str(g))
 
+    def _watched(self, events: Mapping[str, object]) -> System:
+        """The system with events beside those of the text."""
+        text = self._model.text.rstrip("\n") + "\n\n"
+        for name, event in events.items():
+            text += (event if isinstance(event, Event) else Event(event)).text(name) + "\n"
+        return System(self._model._rewritten(text), self._form, **self.settings())
+
+    def _driven(self, inputs: Mapping[str, Any]) -> dict[str, Any]:
+        """The settings with other inputs: what has been set since the system was made counts, except of these."""
+        settings = self.settings()
+        settings["inputs"] = {**settings["inputs"], **inputs}
+        for name in inputs:
+            settings["parameters"].pop(name, None)
+        return settings
+
     def _wished(
         self,
         *,
@@ -196,7 +220,7 @@ class System(_native.SystemCore):
         max_step: float | None = None,
         samples_per_step: int | None = None,
         accumulation: float | None = None,
-        sensitivities: Sequence[str] = (),
+        sensitivities: str | Sequence[str] = (),
         limit_time: float | None = None,
     ) -> dict[str, Any]:
         """The options of an integration, in the form that the native part takes; None stands for
@@ -207,20 +231,19 @@ class System(_native.SystemCore):
             raise ValueError("give either times, or t_end and samples")
         if times is not None and np.size(times) == 0:
             raise ValueError("there are no times")
-        if samples is not None and samples < 2:
+        if samples is not None and whole("samples", samples) < 2:
             raise ValueError("a motion has at least 2 samples, its start and its end")
+        if method is not None and not isinstance(method, str):
+            raise TypeError(f"method is a name, not {method!r}")
+        numbers = {"t_end": t_end, "rtol": rtol, "max_step": max_step, "accumulation": accumulation, "limit_time": limit_time}
         return {
-            "t_end": None if t_end is None else float(t_end),
+            **{name: None if given is None else real(name, given) for name, given in numbers.items()},
             "samples": samples,
-            "times": None if times is None else np.asarray(times, dtype=float).tolist(),
+            "times": None if times is None else np.atleast_1d(np.asarray(times, dtype=float)).tolist(),
             "method": method,
-            "rtol": rtol,
-            "atol": dict(atol) if isinstance(atol, Mapping) else atol,
-            "max_step": max_step,
-            "samples_per_step": samples_per_step,
-            "accumulation": accumulation,
-            "sensitivities": list(sensitivities),
-            "limit_time": limit_time,
+            "atol": reals("atol", atol) if isinstance(atol, Mapping) else None if atol is None else real("atol", atol),
+            "samples_per_step": None if samples_per_step is None else whole("samples_per_step", samples_per_step),
+            "sensitivities": listed("sensitivities", sensitivities),
         }
 
     def run(
@@ -234,10 +257,11 @@ class System(_native.SystemCore):
         rtol: float | None = None,
         atol: float | Mapping[str, float] | None = None,
         max_step: float | None = None,
+        inputs: Mapping[str, Any] | None = None,
         events: Mapping[str, object] | None = None,
         samples_per_step: int | None = None,
         accumulation: float | None = None,
-        sensitivities: Sequence[str] = (),
+        sensitivities: str | Sequence[str] = (),
         estimate: bool = False,
         limit_time: float | None = None,
         verify: bool | None = None,
@@ -267,6 +291,9 @@ class System(_native.SystemCore):
             or else min(1e-12, rtol s) for a component of the scale s at the start, where rounding errors permit this.
         max_step : float, optional
             The maximum length of a step.
+        inputs : mapping, optional
+            The values of inputs for this run alone: numbers, or tables ``(times, values)``, as for :meth:`Model.system`. The
+            equations are derived again if an input gets a table that had none.
         events : mapping, optional
             Events in addition to those of the text: names with expressions that vanish, or with an :class:`Event`. The model is
             derived once more.
@@ -303,11 +330,7 @@ class System(_native.SystemCore):
         (11,)
         """
         if events:
-            text = self._model.text.rstrip("\n") + "\n\n"
-            for name, event in events.items():
-                text += (event if isinstance(event, Event) else Event(event)).text(name) + "\n"
-            watched = System(self._model._rewritten(text), self._form, **self.settings())
-            return watched.run(
+            return self._watched(events).run(
                 t_end,
                 samples=samples,
                 times=times,
@@ -316,6 +339,7 @@ class System(_native.SystemCore):
                 rtol=rtol,
                 atol=atol,
                 max_step=max_step,
+                inputs=inputs,
                 samples_per_step=samples_per_step,
                 accumulation=accumulation,
                 sensitivities=sensitivities,
@@ -341,8 +365,9 @@ class System(_native.SystemCore):
         import numpy as np
 
         state = None if y0 is None else np.asarray(y0, dtype=float).ravel().tolist()
-        outcome = self.integrate(wished, state, estimate, verify)
-        motion = Motion(self, wished, state, outcome)
+        given = [(name, course(name, one)) for name, one in (inputs or {}).items()]
+        outcome = self._integrate(wished, state, bool(estimate), None if verify is None else bool(verify), given)
+        motion = Motion(self, self._driven(inputs or {}), wished, state, outcome)
         if outcome["error"] is not None:
             raise IntegrationError(outcome["error"], motion)
         return motion
@@ -356,7 +381,7 @@ class System(_native.SystemCore):
         Parameters
         ----------
         **settings
-            ``method``, ``rtol``, ``atol``, ``max_step``, … as for :meth:`run`.
+            ``method``, ``rtol``, ``atol``, ``max_step``, ``samples_per_step``, ``accumulation``, ``limit_time`` as for :meth:`run`.
 
         Examples
         --------
@@ -367,7 +392,8 @@ class System(_native.SystemCore):
         >>> round(stepper.t, 9)
         1.0
         """
-        return self.stepping(self._wished(**{"t_end": self.t0 + 1.0, **settings}))
+        only("System.stepper", settings, _STEPS)
+        return self._stepping(self._wished(t_end=self.t0 + 1.0, **settings))
 
     def sweep(
         self,
@@ -406,8 +432,8 @@ class System(_native.SystemCore):
         progress : bool
             Whether to show progress, with tqdm where it is installed.
         **settings
-            ``method``, ``rtol``, ``atol``, ``max_step``, … as for :meth:`run`. The first member, one in the middle and the last are
-            compared with a second derivation unless ``verify=False``.
+            ``method``, ``rtol``, ``atol``, ``max_step``, ``samples_per_step``, ``accumulation``, ``limit_time`` as for :meth:`run`. The
+            first member, one in the middle and the last are compared with a second derivation unless ``verify=False``.
 
         Examples
         --------
@@ -416,7 +442,36 @@ class System(_native.SystemCore):
         >>> sweep["ω3"].shape
         (3,)
         """
+        only("System.sweep", settings, (*_STEPS, "verify"))
         return swept(self, vary, random, members, seed, t_end, rows, threads, progress, settings)
+
+    def trim(self, free: str | Sequence[str] | None = None) -> Trim:
+        """The rest or the steady motion that some inputs and components of the state can be chosen for.
+
+        What is free is chosen by Newton's method from its value now; all else stays as it is, so that a velocity set at the start is
+        that of the steady motion. All rates vanish but those of cyclic coordinates, on which nothing depends.
+
+        Parameters
+        ----------
+        free : sequence of str, optional
+            The inputs, coordinates, quasi-velocities and first-order states to be chosen; all inputs unless given.
+
+        Raises
+        ------
+        ChetaevError
+            Where no values are found, or nothing determines some of them: these are named then.
+
+        Examples
+        --------
+        >>> drone = Model.builtin("quadrotor").system(start={"p": 0.0, "q": 0.0, "s": 0.0})
+        >>> hover = drone.trim(["f1", "f2", "f3", "f4", "θ", "φ"])
+        >>> round(hover.inputs["f1"], 6), round(hover.rates["z"], 6)
+        (1.22625, 0.2)
+        """
+        chosen = self._model.inputs if free is None else listed("free", free)
+        if not chosen:
+            raise ValueError("name what is free: the model has no inputs")
+        return Trim(*self._model_now().trimmed(list(chosen)))
 
     def lyapunov(
         self, count: int = 1, *, interval: float, intervals: int, transient: int = 0, **settings: Any
@@ -432,18 +487,65 @@ class System(_native.SystemCore):
         intervals, transient : int
             How many intervals are counted, and how many before these are skipped.
         **settings
-            ``method``, ``rtol``, ``atol`` as for :meth:`run`.
+            ``method``, ``rtol``, ``atol``, ``max_step``, … as for :meth:`run`.
         """
         import numpy as np
 
+        only("System.lyapunov", settings, _STEPS)
         end = self.t0 + float(interval) * (intervals + transient)
         wished = self._wished(t_end=end, **settings)
-        exponents, history = self.exponents(count, float(interval), (intervals, transient), wished)
+        exponents, history = self._exponents(count, float(interval), (intervals, transient), wished)
         return Lyapunov(np.array(exponents), np.array(history).reshape(-1, count))
+
+    def gradient(
+        self,
+        of: object | None = None,
+        t_end: float | None = None,
+        *,
+        integral: object | None = None,
+        by: str | Sequence[str] | None = None,
+        **settings: Any,
+    ) -> Gradient:
+        """The derivatives of one function of the motion with respect to parameters and the start, by the adjoint equations.
+
+        The motion is integrated forwards and backwards once, whatever the number of parameters; the ``sensitivities`` of :meth:`run`,
+        which are derivatives of all columns, take one integration for each parameter. ``rtol`` determines their accuracy.
+
+        Parameters
+        ----------
+        of : expression, optional
+            The function at the end of the motion: an expression of the model, or the name of an output.
+        t_end : float, optional
+            The time at which the motion ends; the one in the text unless given.
+        integral : expression, optional
+            A function of the state, whose integral over the motion is added.
+        by : sequence of str, optional
+            Parameters and inputs; unless given, all that are numbers and on which no other parameter depends.
+        **settings
+            ``rtol``, ``atol``, ``max_step``, … as for :meth:`run`; ``method`` is ``"adams"`` or ``"bdf"``.
+
+        Examples
+        --------
+        >>> system = Model.builtin("heavy-top-lagrange").system()
+        >>> gradient = system.gradient("γ3", 2.0, rtol=1e-10)
+        >>> motion = system.run(2.0, rtol=1e-10, sensitivities=["mg"])
+        >>> bool(abs(gradient.by_parameters["mg"] - motion.sensitivity("γ3", "mg")[-1]) < 1e-7)
+        True
+        """
+        only("System.gradient", settings, _STEPS)
+        if of is None and integral is None:
+            raise ValueError("name a function at the end of the motion, or one that is integrated")
+        if settings.get("method") not in (None, "adams", "bdf"):
+            raise ValueError(f"the method of a gradient is `adams` or `bdf`, not `{settings['method']}`")
+        known = self._model_now().numbers() if by is None else listed("by", by)
+        wished = self._wished(t_end=t_end, sensitivities=known, **settings)
+        end, density = (None if term is None else str(term) for term in (of, integral))
+        value, start, parameters = self._gradient(end, density, wished)
+        return Gradient(value, dict(parameters), dict(start))
 
     def report(self, motion: Motion | None = None) -> Page:
         """A page with all that is known about the model, and about a motion if one is given."""
-        return Page(self.report_page(None if motion is None else motion._recorded()), height=800)
+        return Page(self._report_page(None if motion is None else motion._recorded()), height=800)
 
 
 def _restored(model: ModelLike, form: str, settings: dict[str, Any]) -> System:

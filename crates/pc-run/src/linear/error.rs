@@ -60,6 +60,30 @@ pub enum LinearError {
         /// The state at which the method ended.
         state: Vec<(String, f64)>,
     },
+    /// Newton's method did not converge for the values to be chosen.
+    #[error(
+        "the rates vanish for no values of {} that were found: those that should vanish have the norm {} where Newton's method ended, \
+         at {}\n  help: leave more inputs or components of the state free, or start nearer",
+        free.join(", "),
+        short(*residual, 3),
+        listed(state)
+    )]
+    NotTrimmed {
+        /// The names of the values to be chosen.
+        free: Vec<String>,
+        /// √Σ f_i²
+        residual: f64,
+        /// The state at which it ended.
+        state: Vec<(String, f64)>,
+    },
+    /// A name to be chosen that is neither a component of the state nor an input.
+    #[error("`{name}` is neither a component of the state nor an input here; these are {}", known.join(", "))]
+    Free {
+        /// As given.
+        name: String,
+        /// The components of the state and the inputs.
+        known: Vec<String>,
+    },
     /// The start is not steady, and no other state is known to be reachable from it.
     #[error(
         "the start is not steady, as rates of norm {} show, and the functions of the coordinates that the frame keeps are not \
@@ -148,6 +172,7 @@ impl LinearError {
             LinearError::Twice { .. }
             | LinearError::Varied(_)
             | LinearError::Component { .. }
+            | LinearError::Free { .. }
             | LinearError::Box(_) => Category::Request,
             LinearError::DependsOnTime { .. }
             | LinearError::Nonlinear
@@ -157,6 +182,7 @@ impl LinearError {
             | LinearError::Branches { .. }
             | LinearError::Analysis(_) => Category::Undefined,
             LinearError::NotSteady { .. }
+            | LinearError::NotTrimmed { .. }
             | LinearError::NoneSteady { .. }
             | LinearError::NoEquilibrium { .. } => Category::Failed,
         }

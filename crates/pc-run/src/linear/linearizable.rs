@@ -60,7 +60,7 @@ impl<'g> Linearizable<'g> {
         Ok(Linearizable { assembly, equations, linearizer, start })
     }
 
-    /// As [`new`](Ground::new), but also tells the observer remarks on the equations and, if requested,
+    /// As [`new`](Linearizable::new), but also tells the observer remarks on the equations and, if requested,
     /// compares them with a second derivation.
     ///
     /// # Errors

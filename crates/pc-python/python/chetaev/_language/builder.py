@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Generic, TypeVar
 
+from chetaev._language.arguments import listed, real, whole
 from chetaev._language.errors import ChetaevError
 from chetaev._language.joints import Joint
 from chetaev._language.toml import entry, formula, number, quoted
@@ -214,7 +215,7 @@ class Builder(Generic[M]):
         length: Any = None,
     ) -> Builder[M]:
         """A joint between two bodies that are already attached: a ``"point"``, a ``"revolute"`` joint or a ``"rod"``."""
-        entries = {"kind": kind, "bodies": list(bodies), "at": at, "axis": axis, "length": length}
+        entries = {"kind": kind, "bodies": listed("bodies", bodies), "at": at, "axis": axis, "length": length}
         return self._table("loops", name, entries)
 
     def draw(self, kind: str, **entries: Any) -> Builder[M]:
@@ -260,16 +261,21 @@ class Builder(Generic[M]):
         return self
 
     def simulation(self, **settings: Any) -> Builder[M]:
-        """Default settings of a run: ``t_end``, ``samples``, ``rtol``, ``method``, …"""
+        """Default settings of a run: ``t_end``, ``samples``, ``rtol``, ``atol`` (a number, or a mapping of names), ``method``, ``form``,
+        ``hamel`` (a mapping of quasi-velocities to their definitions), ``project`` and ``independent`` (names), …
+        """
         for key, value in settings.items():
-            if isinstance(value, str):
+            if key in ("project", "independent"):
+                text = "[" + ", ".join(quoted(name) for name in listed(key, value)) + "]"
+            elif isinstance(value, Mapping):
+                entries = (f"{quoted(name)} = {(formula if key == 'hamel' else number)(one)}" for name, one in value.items())
+                text = "{ " + ", ".join(entries) + " }"
+            elif key in ("samples", "samples_per_step"):
+                text = str(whole(key, value))
+            elif isinstance(value, str):
                 text = quoted(value)
-            elif isinstance(value, (list, tuple)):
-                text = "[" + ", ".join(quoted(str(entry)) for entry in value) + "]"
-            elif isinstance(value, int):
-                text = str(value) if key in ("samples", "samples_per_step") else number(value)
             else:
-                text = number(value)
+                text = number(real(key, value))
             self._put("simulation", (key,), text)
         return self
 

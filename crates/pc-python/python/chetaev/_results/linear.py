@@ -154,6 +154,37 @@ class RootLocus:
         return f"<RootLocus of {len(self.branches)} eigenvalues over {len(self.values)} values of {self.parameter}>"
 
 
+class Trim:
+    """A state and inputs at rest or in steady motion, made by :meth:`System.trim`.
+
+    Attributes
+    ----------
+    state : dict
+        The state, by the names of its components.
+    inputs : dict
+        The inputs.
+    rates : dict
+        The cyclic coordinates with their rates, which are constant: all zero at rest.
+    residual : float
+        The norm of the rates that should vanish.
+    """
+
+    def __init__(self, text: str, data: str) -> None:
+        self._text = text
+        found: dict[str, Any] = json.loads(data)
+        self.state: dict[str, float] = found["state"]
+        self.inputs: dict[str, float] = found["inputs"]
+        self.rates: dict[str, float] = found["rates"]
+        self.residual: float = found["residual"]
+
+    def __str__(self) -> str:
+        return self._text
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name} = {value:g}" for name, value in {**self.inputs, **self.state}.items())
+        return f"<Trim {values}>"
+
+
 class Equilibrium(NamedTuple):
     """A state of rest."""
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from chetaev import _native
+from chetaev._language.arguments import listed
 from chetaev._language.errors import ChetaevError, UnknownNameError
 from chetaev._results.printed import Page
 
@@ -67,12 +68,18 @@ class Motion(Mapping[str, "Floats"]):
     """
 
     def __init__(
-        self, system: SystemLike, wished: dict[str, Any], start: list[float] | None, outcome: _native._Outcome
+        self,
+        system: SystemLike,
+        settings: dict[str, Any],
+        wished: dict[str, Any],
+        start: list[float] | None,
+        outcome: _native._Outcome,
     ) -> None:
-        self._origin = (system.model, system.form, system.settings())
+        self._origin = (system.model, system.form, settings)
         self._system: Any = None
         self._kinds = {kind: tuple(names) for kind, names in outcome["kinds"].items()}
         self._keeps_energy = outcome["keeps_energy"]
+        self._conserved_at_start = outcome["conserved_at_start"]
         self._wished = wished
         self._start = start
         self.t: Floats = outcome["t"]
@@ -123,7 +130,8 @@ class Motion(Mapping[str, "Floats"]):
         """How far each integral, including the energy, deviates at most from its value at the start."""
         if len(self.t) == 0:
             return {}
-        return {name: float(abs(self[name] - self[name][0]).max()) for name in self._kinds["conserved"]}
+        starts = zip(self._kinds["conserved"], self._conserved_at_start)
+        return {name: float(abs(self[name] - start).max()) for name, start in starts}
 
     def dense(self, t: npt.ArrayLike) -> Floats:
         """The state at any time of the motion: n numbers, or n × N for N times.
@@ -141,11 +149,11 @@ class Motion(Mapping[str, "Floats"]):
 
         if self._dense is None:
             end = float(self.t[-1])
-            start = self.system.start_state() if self._start is None else self._start
-            self._dense = self.system.dense(end, start, {**self._wished, "t_end": end, "times": None})
+            start = self.system._start_state() if self._start is None else self._start
+            self._dense = self.system._dense(end, start, {**self._wished, "t_end": end, "times": None})
         times = np.asarray(t, dtype=float)
         states = self._dense.at(times.ravel().tolist())
-        return states[:, 0] if times.ndim == 0 else states.reshape(-1, *times.shape)
+        return states[:, 0] if times.ndim == 0 else states.reshape(states.shape[0], *times.shape)
 
     def sensitivity(self, name: str, parameter: str) -> Floats:
         """The column ∂(column)/∂(parameter), if it was requested from :meth:`System.run`."""
@@ -158,7 +166,7 @@ class Motion(Mapping[str, "Floats"]):
         index = pd.Index(self.t, name="t")
         return pd.DataFrame(self._values, index=index, columns=list(self.columns[1:]))
 
-    def plot(self, names: Sequence[str] | None = None, *, ax: Any = None) -> Any:
+    def plot(self, names: str | Sequence[str] | None = None, *, ax: Any = None) -> Any:
         """Draws columns over time with matplotlib.
 
         Parameters
@@ -176,7 +184,7 @@ class Motion(Mapping[str, "Floats"]):
         import matplotlib.pyplot as plt
 
         if names is not None or ax is not None:
-            chosen = names or self.columns[1:]
+            chosen = self.columns[1:] if names is None else listed("names", names)
             if ax is None:
                 _, ax = plt.subplots()
             for name in chosen:
@@ -222,7 +230,7 @@ class Motion(Mapping[str, "Floats"]):
         ChetaevError
             If the text contains nothing to be drawn.
         """
-        page = self.system.animation_page(self._recorded())
+        page = self.system._animation_page(self._recorded())
         if page is None:
             raise ChetaevError(
                 f"there is nothing to be drawn of {self.system.model.title}: add [[draw]] or bodies to its text"

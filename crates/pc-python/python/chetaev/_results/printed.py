@@ -49,7 +49,7 @@ class Equations:
 
     def __init__(self, model: ModelLike, form: str, width: int, inline: bool, settings: dict[str, Any]) -> None:
         self._arguments = (model, form, width, inline, settings)
-        self._core = model._changed(settings)
+        self._core = model._changed("Model.derive", settings)
         self.form = form
         self.text = self._printed("text")
 
@@ -140,7 +140,7 @@ class Theory:
         self, model: ModelLike, degree: int, functions: Sequence[str], settings: dict[str, Any]
     ) -> None:
         self._arguments = (model, degree, functions, settings)
-        self._core = model._changed(settings)
+        self._core = model._changed("Model.theory", settings)
         self.text = self._printed("text")
 
     def _printed(self, language: str) -> str:

@@ -22,6 +22,17 @@ class Lyapunov(NamedTuple):
     history: Floats
 
 
+class Gradient(NamedTuple):
+    """A function of a motion with its derivatives."""
+
+    #: Its value.
+    value: float
+    #: The derivatives by parameters and inputs, by their names.
+    by_parameters: dict[str, float]
+    #: The derivatives by the components of the state at the start, by their names, each with the others held.
+    by_start: dict[str, float]
+
+
 class Bracket:
     """The Poisson bracket (f, g) (12) of two functions of the state, as a function of time and state."""
 
@@ -29,7 +40,7 @@ class Bracket:
 
     def __init__(self, system: SystemLike, f: str, g: str) -> None:
         self._arguments = (system, f, g)
-        self._function = system.poisson_bracket(f, g)
+        self._function = system._poisson_bracket(f, g)
 
     def __call__(self, t: float, y: npt.ArrayLike) -> float:
         import numpy as np

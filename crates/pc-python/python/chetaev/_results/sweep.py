@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from chetaev import _native
+from chetaev._language.arguments import whole
 from chetaev._language.errors import ChetaevError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -95,6 +96,8 @@ def swept(
     """Carries out :meth:`System.sweep`."""
     import numpy as np
 
+    if rows is not None and whole("rows", rows) < 2:
+        raise ValueError("rows are at least 2, the start and the end; without them there is the end of each motion")
     if bool(vary) == bool(random):
         raise ChetaevError("give values to vary, or distributions to draw from, and not both")
     if vary:
@@ -124,7 +127,7 @@ def swept(
         called = lambda done: bar.update(done - bar.n)  # noqa: E731
     try:
         all_rows = rows is not None
-        found = system.ensemble(list(names), values.ravel().tolist(), wished, all_rows, threads, verify, called)
+        found = system._ensemble(list(names), values.ravel().tolist(), wished, all_rows, threads, verify, called)
     finally:
         if bar is not None:
             bar.close()

@@ -24,7 +24,7 @@ class Values(MutableMapping[str, float]):
         self._kind = kind
 
     def _now(self) -> dict[str, float]:
-        model = self._system.model_now()
+        model = self._system._model_now()
         return dict(model.parameters() if self._kind == "parameters" else model.start())
 
     def __getitem__(self, name: str) -> float:
