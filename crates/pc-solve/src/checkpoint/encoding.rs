@@ -22,14 +22,14 @@ use crate::integration::trajectory::Trajectory;
 const MAGIC: &[u8] = b"pc checkpoint ";
 const VERSION: u64 = 6;
 
-/// Why bytes cannot be read as a checkpoint.
+/// Why the bytes cannot be read as a checkpoint.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckpointError {
     /// The bytes are not those of a checkpoint.
     #[error("it is not a checkpoint")]
     Foreign,
-    /// A checkpoint of another version of the format.
+    /// A checkpoint in another version of the format.
     #[error("it is a checkpoint of version {found} of the format, not {VERSION}")]
     Version {
         /// Its version.

@@ -12,7 +12,7 @@ pub enum InputError {
     #[error("the vector field has no components")]
     NoComponents,
 
-    /// A list with one number for each component has the wrong length.
+    /// A list that needs one number for each component has the wrong length.
     #[error("{what}: expected one number for each component ({expected}), found {found}")]
     Length {
         /// Which list.
@@ -23,7 +23,7 @@ pub enum InputError {
         found: usize,
     },
 
-    /// A checkpoint belongs to a motion with another number of events.
+    /// A checkpoint belongs to a motion with a different number of events.
     #[error("the checkpoint belongs to another motion: its number of events is {found}, not {expected}")]
     EventCount {
         /// Number of events of the motion.
@@ -50,7 +50,7 @@ pub enum InputError {
         value: f64,
     },
 
-    /// The maximum order is 0 or beyond the orders of the method.
+    /// The maximum order is 0 or higher than any order of the method.
     #[error("the maximum order is {found}, but {method} has orders 1 to {limit}")]
     MaxOrder {
         /// The method.
@@ -61,7 +61,7 @@ pub enum InputError {
         found: u32,
     },
 
-    /// An option that the method does not have.
+    /// An option that the method does not support.
     #[error("{method} does not let you choose {what}: leave the choice out")]
     Explicit {
         /// The method.
@@ -86,16 +86,16 @@ pub enum InputError {
         method: Method,
     },
 
-    /// The least step is larger than the largest.
+    /// The minimum step is larger than the maximum step.
     #[error("the minimum step {min} is larger than the maximum step {max}")]
     StepBounds {
-        /// The least step.
+        /// The minimum step.
         min: f64,
-        /// The largest step.
+        /// The maximum step.
         max: f64,
     },
 
-    /// A checkpoint belongs to an integration with another number of sensitivities.
+    /// A checkpoint belongs to an integration with a different number of sensitivities.
     #[error(
         "the checkpoint has {found} columns of sensitivities, but {expected} are requested: resume with the sensitivities that it was written with"
     )]
@@ -110,7 +110,8 @@ pub enum InputError {
     #[error("no functional is given: a gradient needs at least one")]
     NoFunctional,
 
-    /// Integrals are read from an integration that has none, or requested from one that has begun.
+    /// Integrals are read from an integration that has none, or requested of one that has already
+    /// begun.
     #[error("integrals must be requested once, before the first step")]
     NoIntegrals,
 
@@ -118,16 +119,16 @@ pub enum InputError {
     #[error("the integration was begun without sensitivities")]
     NoSensitivities,
 
-    /// Derivatives are requested of a motion whose rates jump where it crosses a surface, at a time
-    /// that depends on the variable of differentiation.
+    /// Derivatives are requested of a motion whose rates jump where it crosses a surface, and the
+    /// time of crossing depends on the variable of differentiation.
     #[error(
         "{0}: the derivatives of the motion jump with it, and would not show this. Make the jump an event that switches a \
          state, or smooth it, as tanh does"
     )]
     RateJump(RateJump),
 
-    /// Derivatives with respect to parameters are requested, with events whose derivatives with respect to
-    /// these are unknown.
+    /// Derivatives with respect to parameters are requested, with events whose derivatives with
+    /// respect to the parameters are unknown.
     #[error(
         "an event resets the state, but does not say how its function and its reset depend on the parameters: sensitivities need these derivatives"
     )]
@@ -150,7 +151,7 @@ pub enum InputError {
     #[error("the maximum number of steps must be at least 1")]
     MaxSteps,
 
-    /// A linear solver is chosen together with the fixed-point iteration, which uses none.
+    /// A linear solver is chosen together with the fixed-point iteration, which does not use one.
     #[error(
         "a linear solver is chosen, but the fixed-point iteration solves no linear systems: choose Newton's iteration, or no linear solver"
     )]
@@ -214,7 +215,7 @@ pub enum InputError {
     },
 
     /// Inequalities are given for a field with a projection, which could move states so that they
-    /// violate them again.
+    /// violate the inequalities again.
     #[error(
         "inequalities cannot be imposed on a vector field that projects its states: the projection could violate them"
     )]
@@ -229,11 +230,11 @@ pub enum InputError {
         "output times must increase throughout or decrease throughout: {time} (number {index} from 0) follows {previous}"
     )]
     TimesNotMonotonic {
-        /// Position in the list.
+        /// The position of the time in the list.
         index: usize,
-        /// The time before it.
+        /// The time before that one.
         previous: f64,
-        /// The time that repeats the one before or reverses the direction.
+        /// The time that repeats the previous one or reverses the direction.
         time: f64,
     },
 
@@ -304,7 +305,7 @@ pub enum InputError {
     NoParameter {
         /// The number requested.
         index: usize,
-        /// Number of parameters.
+        /// The number of parameters.
         len: usize,
     },
 

@@ -1,7 +1,7 @@
 //! Numbers that are not finite.
 
-/// A number that is not finite: a vector field that reported no failure wrote it, or failed to
-/// write it.
+/// A number that is not finite: the vector field wrote it without reporting a failure, or left the
+/// entry unwritten.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NonFinite {
@@ -134,7 +134,7 @@ pub enum NonFinite {
         component: String,
         /// NaN or an infinity.
         value: f64,
-        /// When it occurred.
+        /// When the event occurred.
         t: f64,
     },
 }

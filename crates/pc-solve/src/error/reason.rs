@@ -24,7 +24,7 @@ pub enum Reason {
         steps: u64,
         /// The time of the next output.
         t: f64,
-        /// The length of the last one.
+        /// The length of the last step.
         last: f64,
     },
 
@@ -32,17 +32,17 @@ pub enum Reason {
     Crawls {
         /// The number of these steps.
         steps: u64,
-        /// The time they have advanced.
+        /// The time by which they have advanced.
         by: f64,
-        /// The cause of their being short.
+        /// Why they are so short.
         cause: Shrinks,
     },
 
     /// The [deadline](crate::Options::deadline) passed.
     Ended(Spent),
 
-    /// The backward integration of the adjoint equations could not go on; time and state reached
-    /// are those of the motion there.
+    /// The backward integration of the adjoint equations could not go on; the time and the state
+    /// reached are those of the motion at that point.
     Adjoint(Box<Reason>),
 
     /// The end term of a [functional](crate::Functional) failed.
@@ -52,12 +52,12 @@ pub enum Reason {
     EndsEarly {
         /// Its name.
         event: String,
-        /// When it occurred.
+        /// When the event occurred.
         t: f64,
     },
 
-    /// Within one interval a tangent vector became a linear combination of those before it, up to
-    /// rounding error.
+    /// Within one interval, a tangent vector became a linear combination of the preceding ones, up
+    /// to rounding error.
     Collapsed {
         /// Its number.
         vector: usize,
@@ -69,14 +69,14 @@ pub enum Reason {
         component: String,
         /// NaN or an infinity.
         value: f64,
-        /// End of that step.
+        /// The end of that step.
         t: f64,
     },
 
     /// The state could not be [projected](pc_expr::VectorField::project) onto the surface to which
     /// it belongs.
     Projection {
-        /// Time of that state.
+        /// The time of that state.
         t: f64,
     },
 
@@ -93,12 +93,12 @@ pub enum Reason {
 
     /// The vector field could not be evaluated, and no shorter step is possible.
     Rates {
-        /// Time of the state at which it was evaluated.
+        /// The time of the state at which the evaluation was tried.
         t: f64,
     },
 
     /// The motion reaches a corner or a jump of the field and neither crosses nor leaves it: it
-    /// would slide along it.
+    /// would slide along the corner or jump.
     Sliding {
         /// The expression that vanishes there.
         branch: String,
@@ -109,17 +109,17 @@ pub enum Reason {
     /// The motion reaches surfaces on which the field changes, and no continuation is consistent
     /// with the rates there.
     Undecided {
-        /// The functions that vanish on them.
+        /// The functions that vanish on these surfaces.
         surfaces: Vec<String>,
-        /// When they were reached.
+        /// When the surfaces were reached.
         t: f64,
     },
 
-    /// The function of an event could not be evaluated, or that of another event evaluated with it.
+    /// The function of an event, or of another event evaluated with it, could not be evaluated.
     Event {
         /// Its name.
         event: String,
-        /// Time of the state at which it was evaluated.
+        /// The time of the state at which the evaluation was tried.
         t: f64,
     },
 
@@ -127,7 +127,7 @@ pub enum Reason {
     Reset {
         /// Its name.
         event: String,
-        /// When it occurred.
+        /// When the event occurred.
         t: f64,
     },
 
@@ -135,7 +135,7 @@ pub enum Reason {
     Grazing {
         /// Its name.
         event: String,
-        /// When it occurred.
+        /// When the event occurred.
         t: f64,
     },
 
@@ -151,7 +151,7 @@ pub enum Reason {
     Cascade {
         /// The event that has occurred too often.
         event: String,
-        /// How often it has occurred at that time.
+        /// How often that event has occurred at that time.
         occurrences: usize,
         /// When they occurred.
         t: f64,
@@ -160,7 +160,7 @@ pub enum Reason {
     /// The rates before or after a reset, which determine the jump of sensitivities, cannot be
     /// evaluated.
     Saltation {
-        /// When it occurred.
+        /// When the reset occurred.
         t: f64,
     },
 
@@ -170,18 +170,18 @@ pub enum Reason {
         event: String,
         /// How often it has occurred.
         occurrences: u64,
-        /// The limit of its occurrences, if their intervals continue as a geometric series.
+        /// The limit of the times of occurrence, if their intervals continue as a geometric series.
         t: f64,
     },
 }
 
-/// The cause that keeps steps short.
+/// What keeps the steps short.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Shrinks {
     /// Rapid changes in the explicit dependence of the field on time.
     Time,
-    /// The component of this name, whose rate is the largest relative to the tolerances.
+    /// The component with this name: its rate is the largest relative to the tolerances.
     Component(String),
 }
 
@@ -226,7 +226,7 @@ impl Reason {
         self
     }
 
-    /// The return code of CVODES, if that is the reason.
+    /// The return code of CVODES that corresponds to the reason, if there is one.
     pub(super) fn code(&self) -> Option<Code> {
         match self {
             Reason::Cvode { code, .. } => Some(*code),
@@ -254,7 +254,7 @@ impl Reason {
         }
     }
 
-    /// Which limit was reached, if that is the reason.
+    /// Which limit was reached, if a limit is the reason.
     pub(super) fn ended(&self) -> Option<Spent> {
         match self {
             Reason::Ended(spent) => Some(*spent),

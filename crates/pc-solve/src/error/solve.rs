@@ -25,7 +25,7 @@ pub enum SolveError {
         function: &'static str,
         /// Its return code.
         code: i32,
-        /// What SUNDIALS said.
+        /// The message from SUNDIALS.
         message: String,
     },
 
@@ -35,7 +35,7 @@ pub enum SolveError {
 }
 
 impl SolveError {
-    /// Which limit ended the integration, if one did.
+    /// Which limit ended the integration, if any did.
     pub fn ended(&self) -> Option<Spent> {
         match self {
             SolveError::Integration(error) => error.reason.ended(),
@@ -43,7 +43,7 @@ impl SolveError {
         }
     }
 
-    /// The return code of CVODES, if that is the reason.
+    /// The return code of CVODES that corresponds to the reason, if there is one.
     pub fn code(&self) -> Option<Code> {
         match self {
             SolveError::Integration(error) => error.reason.code(),
@@ -68,11 +68,11 @@ impl SolveError {
 pub struct IntegrationError {
     /// Why it could not go on.
     pub reason: Reason,
-    /// End of the last successful internal step.
+    /// The end of the last successful internal step.
     pub time: f64,
     /// The state at [`time`](IntegrationError::time), one number per component of the field.
     pub state: Vec<f64>,
-    /// The last failure of the vector field there: one that it reported itself, or
+    /// The last failure of the vector field there: one that the field itself reported, or
     /// [`NonFinite`](crate::NonFinite) for a number that is not finite.
     pub failure: Option<Failure>,
 }
