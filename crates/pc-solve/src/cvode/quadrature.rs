@@ -17,6 +17,6 @@ pub(crate) trait Quadratures {
 pub(crate) struct Quadrature {
     /// Room for their values, written by CVODES.
     pub(super) values: Vector,
-    /// Their values at the last start.
+    /// Their values at the last start or restart.
     pub(super) start: Vec<f64>,
 }

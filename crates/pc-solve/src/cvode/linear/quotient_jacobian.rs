@@ -24,7 +24,7 @@ fn least_increment(gamma: f64, f: &[f64], weights: &[f64]) -> f64 {
 ///
 /// # Safety
 /// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData),
-/// vectors of its dimension and a matrix of our own for the field's pattern.
+/// vectors of its dimension and a matrix of our own type with the field's pattern.
 pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     t: f64,
     z: sys::N_Vector,
