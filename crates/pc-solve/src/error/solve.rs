@@ -51,7 +51,7 @@ impl SolveError {
         }
     }
 
-    /// The last state reached, (t, y), if the integration had begun.
+    /// The last time and state reached, (t, y), if the integration had begun.
     pub fn reached(&self) -> Option<(f64, &[f64])> {
         match self {
             SolveError::Integration(error) => Some((error.time, &error.state)),
