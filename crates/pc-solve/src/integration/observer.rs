@@ -6,7 +6,7 @@ use crate::events::events::Occurrence;
 
 /// An observer of a motion during its integration, which it may stop.
 ///
-/// [`Observed`] makes one from closures.
+/// [`Observed`] makes an observer from closures.
 pub trait Observer {
     /// An output.
     fn output(&mut self, t: f64, y: &[f64]) -> ControlFlow<()>;
@@ -24,7 +24,7 @@ pub trait Observer {
     }
 }
 
-/// An [`Observer`] made of closures for outputs, events and steps.
+/// An [`Observer`] made from closures for outputs, events and steps.
 ///
 /// ```
 /// use std::ops::ControlFlow::Continue;

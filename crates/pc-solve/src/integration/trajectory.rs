@@ -2,12 +2,12 @@
 
 use crate::integration::statistics::Statistics;
 
-/// The states of a motion at its output times, in the order they were reached.
+/// The states of a motion at its output times, in the order in which they were reached.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     dim: usize,
     times: Vec<f64>,
-    /// One state after the other.
+    /// One state after another.
     states: Vec<f64>,
     complete: bool,
     statistics: Statistics,
@@ -47,12 +47,12 @@ impl Trajectory {
         self.statistics = statistics;
     }
 
-    /// Number of components of a state.
+    /// The number of components of a state.
     pub fn dim(&self) -> usize {
         self.dim
     }
 
-    /// Number of outputs.
+    /// The number of outputs.
     pub fn len(&self) -> usize {
         self.times.len()
     }
@@ -75,7 +75,7 @@ impl Trajectory {
         &self.states[i * self.dim..(i + 1) * self.dim]
     }
 
-    /// All states, one after the other: component j at `times()[i]` is `states()[i * dim + j]`.
+    /// All states, one after another: component j at `times()[i]` is `states()[i * dim + j]`.
     pub fn states(&self) -> &[f64] {
         &self.states
     }
@@ -104,7 +104,7 @@ impl Trajectory {
         self.complete
     }
 
-    /// The work done, including that beyond the last output if the integration failed or was
+    /// The work done, including the work beyond the last output if the integration failed or was
     /// stopped.
     pub fn statistics(&self) -> &Statistics {
         &self.statistics
