@@ -122,8 +122,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 
     /// For each occurrence so far, the derivatives of its time with respect to the variable of each column of the
-    /// sensitivities, τ = −(g_y s⁻ + g_p)/(g_t + g_y f⁻). Empty without sensitivities; The entries
-    /// are NaN if the events have no derivatives with respect to
+    /// sensitivities, τ = −(g_y s⁻ + g_p)/(g_t + g_y f⁻). The list is empty without sensitivities;
+    /// its entries are NaN if the events have no derivatives with respect to
     /// [parameters](Events::by_parameter), and where the functions of the events only touch zero.
     pub fn time_derivatives(&self) -> &[Vec<f64>] {
         &self.time_derivatives

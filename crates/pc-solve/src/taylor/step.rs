@@ -58,8 +58,8 @@ impl<F: VectorField> Taylor<F> {
         Ok(if length.is_infinite() { wanted } else { length.min(FARTHEST * known) })
     }
 
-    /// Makes a step along the series; returns the time at its end as a number and its rounding
-    /// error, to be added to it.
+    /// Makes a step along the series; returns the time at its end as a number, and the rounding
+    /// error to be added to that number.
     pub(super) fn find_step(
         &mut self,
         towards: f64,
@@ -202,7 +202,7 @@ impl<F: VectorField> Taylor<F> {
         if self.ahead.is_finite() { Ok(()) } else { Err(refused(self.blame(t))) }
     }
 
-    /// The failure to report for a series that is not finite.
+    /// The failure to be reported for a series that is not finite.
     #[cold]
     pub(super) fn blame(&mut self, t: f64) -> Failure {
         if let Err(failure) = self.field.rhs(t, self.ahead.of_order(0), &mut self.rates) {
