@@ -15,7 +15,7 @@ pub(super) struct Growth {
     direction: Vec<f64>,
     state: Vec<f64>,
     rates: [Vec<f64>; 2],
-    /// The latest estimates; the largest of them is used.
+    /// The latest estimates; the largest one is used.
     recent: [f64; RECENT],
     count: usize,
 }

@@ -28,14 +28,15 @@ const DOUBLINGS: u32 = 8;
 /// A method that uses [`Dop853`] where the motion is not stiff, and [`Cvode`] with BDF formulas
 /// where it is.
 ///
-/// It begins with the explicit method. Where [stiffness](Dop853::stiff_from) is detected, CVODE
-/// continues from the end of that step at order 1; once the length of the steps times an estimate
-/// of the largest eigenvalue of ∂f/∂y has been below 1 for many steps, it returns to the explicit
-/// method, which is stable up to 6.1. Each return doubles the number of steps needed for the next
-/// one, to prevent oscillation between the methods. The motion alone decides: the same input gives
-/// the same steps. A motion resumed from a checkpoint always begins with the explicit method.
+/// The integration begins with the explicit method. Where [stiffness](Dop853::stiff_from) is
+/// detected, CVODE continues from the end of that step at order 1; once the length of the steps
+/// times an estimate of the largest eigenvalue of ∂f/∂y has been below 1 for many steps, it returns
+/// to the explicit method, which is stable up to 6.1. Each return doubles the number of steps
+/// needed for the next one, to prevent oscillation between the methods. The motion alone decides:
+/// the same input gives the same steps. A motion resumed from a checkpoint always begins with the
+/// explicit method.
 pub struct Auto<F: VectorField> {
-    /// None only while one method replaces the other.
+    /// The current method; none only while one method replaces the other.
     engine: Option<Engine<F>>,
     /// The options of both methods; the method they name is [`Method::Bdf`].
     options: Options,

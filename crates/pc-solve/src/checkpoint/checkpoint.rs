@@ -101,27 +101,29 @@ impl Checkpoint {
         self.time
     }
 
-    /// The state at that time.
+    /// The state at the checkpoint.
     pub fn state(&self) -> &[f64] {
         &self.state
     }
 
-    /// The sensitivities at that time, column-major; empty if there are none.
+    /// The sensitivities at the checkpoint, column-major; empty if there are none.
     pub fn sensitivities(&self) -> &[f64] {
         &self.sensitivities
     }
 
-    /// The outputs of [`solve_checkpointed`](crate::solve_checkpointed) up to that time.
+    /// The outputs of [`solve_checkpointed`](crate::solve_checkpointed) up to the time of the
+    /// checkpoint.
     pub fn outputs(&self) -> &Trajectory {
         &self.outputs
     }
 
-    /// The occurrences of [`solve_checkpointed`](crate::solve_checkpointed) up to that time.
+    /// The occurrences of events in [`solve_checkpointed`](crate::solve_checkpointed) up to the
+    /// time of the checkpoint.
     pub fn occurrences(&self) -> &[Occurrence] {
         &self.occurrences
     }
 
-    /// The work up to that time.
+    /// The work up to the time of the checkpoint.
     pub fn statistics(&self) -> &Statistics {
         &self.statistics
     }

@@ -115,7 +115,7 @@ struct Plan<'a> {
     times: &'a [f64],
     /// The number of steps in a leg.
     every: u64,
-    /// Maximum number of steps from one output to the next.
+    /// The maximum number of steps from one output to the next.
     limit: u64,
 }
 

@@ -20,7 +20,7 @@ use crate::foresight::SURPRISE;
 use crate::foresight::places::{Ahead, Here, Places};
 use crate::foresight::scatter::scatters;
 
-/// Maximum length of the first step as a fraction of the whole interval, as CVODE estimates it.
+/// The maximum length of the first step as a fraction of the whole interval, as CVODE estimates it.
 const FIRST_STEP: f64 = 0.1;
 
 impl<F: VectorField> Cvode<F> {

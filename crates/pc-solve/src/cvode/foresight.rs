@@ -12,7 +12,7 @@ const NEXT_TERM: f64 = 20.0;
 
 /// The times to examine, and the prediction of the motion at them.
 pub(super) struct Foresight {
-    /// None while the value is in use elsewhere.
+    /// The times to examine; none while they are in use elsewhere.
     pub(super) places: Option<Places>,
     pub(super) relative_tolerance: f64,
     pub(super) absolute_tolerance: Tolerance,

@@ -16,7 +16,7 @@ pub(crate) type Integrands = Box<dyn FnMut(f64, &[f64], &mut [f64]) -> Result<()
 /// work of a force, the length of a path, a mean value.
 ///
 /// The method integrates these integrals like further components of the state, but outside its
-/// implicit equations. Steps also have to pass the error test of the integrals, unless that test is
+/// implicit equations. Steps also have to pass the error test of the integrals unless that test is
 /// [switched off](Integrals::error_control).
 ///
 /// ```
@@ -71,8 +71,8 @@ impl Integrals {
         Integrals { error_control, ..self }
     }
 
-    /// Sets the relative and absolute tolerance of the integrals, positive; by default, they are
-    /// those of the state, with the smallest of its absolute tolerances.
+    /// Sets the relative and absolute tolerance of the integrals, both positive; by default, they
+    /// are the relative tolerance of the state and the smallest of its absolute tolerances.
     pub fn tolerances(self, relative: f64, absolute: f64) -> Integrals {
         Integrals { tolerances: Some((relative, absolute)), ..self }
     }

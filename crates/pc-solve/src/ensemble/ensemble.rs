@@ -53,8 +53,8 @@ use crate::solve::solve::Solve;
 /// The number of members per thread that may have begun ahead of the member to be consumed next.
 const WINDOW: usize = 64;
 
-/// Maximum number of threads: more threads would not help, and many more would exhaust the memory
-/// and end the program.
+/// The maximum number of threads: more threads would not help, and many more would exhaust the
+/// memory and end the program.
 const MOST_THREADS: usize = 1024;
 
 /// The stack size of a thread in bytes, the usual one of the main thread: making a member may
@@ -115,8 +115,8 @@ impl<'a> Ensemble<'a> {
     /// Integrates each member as [`solve`](crate::solve()) does, and passes the trajectories to
     /// `consume` in the order of the members.
     ///
-    /// `make` returns the vector field of a member and its state at `t0`. It is called on the
-    /// thread that integrates.
+    /// `make` returns the vector field of a member and its state at `t0`. `make` is called on the
+    /// thread that integrates the member.
     ///
     /// With [`Method::Auto`](crate::Method::Auto) and [`Method::Dop853`](crate::Method::Dop853),
     /// members whose fields are [programs](VectorField::lanes) that do not read the time are
@@ -124,7 +124,7 @@ impl<'a> Ensemble<'a> {
     /// [`map_in_lanes`](Ensemble::map_in_lanes).
     ///
     /// # Errors
-    /// [`EnsembleError`] if threads cannot be started. An error of a member is its result.
+    /// [`EnsembleError`] if threads cannot be started. If a member fails, its error is its result.
     pub fn solve<F, E>(
         &self,
         members: Range<u64>,
@@ -270,11 +270,11 @@ impl<'a> Ensemble<'a> {
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum MemberError<E> {
-    /// It could not be made.
+    /// The member could not be made.
     Make(E),
-    /// Its integration failed; this holds the outputs reached before the failure.
+    /// The integration of the member failed; this holds the outputs reached before the failure.
     Solve(Box<SolveFailure>),
-    /// Its vector field panicked.
+    /// The vector field of the member panicked.
     Panic {
         /// The message of the panic.
         message: String,

@@ -18,7 +18,7 @@ use crate::integration::integration::Ending;
 use crate::integration::trajectory::Trajectory;
 use crate::settings::options::Options;
 
-/// Maximum number of members in a group, which is handed out as a whole to reduce the overhead.
+/// The maximum number of members in a group, which is handed out as a whole to reduce the overhead.
 const GROUP: u64 = 64;
 
 impl Ensemble<'_> {
@@ -29,7 +29,7 @@ impl Ensemble<'_> {
     /// [field](pc_expr::VectorField::lanes) and its state at t₀. `in_lane` turns its complete
     /// motion into its result. `alone` integrates members that lanes do not support, or whose
     /// motion was not completed in a lane; it should check [`Stop`] regularly. All three closures
-    /// are called on the thread that integrates.
+    /// are called on the thread that integrates the member.
     ///
     /// Lanes are used with [`Method::Auto`](crate::Method::Auto) and
     /// [`Method::Dop853`](crate::Method::Dop853), for fields that do not read time, without

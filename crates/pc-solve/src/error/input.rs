@@ -17,18 +17,18 @@ pub enum InputError {
     Length {
         /// Which list.
         what: &'static str,
-        /// Dimension of the vector field.
+        /// The dimension of the vector field.
         expected: usize,
-        /// Length of the list.
+        /// The length of the list.
         found: usize,
     },
 
     /// A checkpoint belongs to a motion with a different number of events.
     #[error("the checkpoint belongs to another motion: its number of events is {found}, not {expected}")]
     EventCount {
-        /// Number of events of the motion.
+        /// The number of events of the motion.
         expected: usize,
-        /// Number of events in the checkpoint.
+        /// The number of events in the checkpoint.
         found: usize,
     },
 
@@ -41,7 +41,7 @@ pub enum InputError {
         value: f64,
     },
 
-    /// An option that must be positive is not.
+    /// An option that must be positive is not positive.
     #[error("{what} is {value}, but must be positive")]
     NotPositive {
         /// Which option.
@@ -55,7 +55,7 @@ pub enum InputError {
     MaxOrder {
         /// The method.
         method: Method,
-        /// Its highest order.
+        /// The highest order of the method.
         limit: u32,
         /// The order requested.
         found: u32,
@@ -100,9 +100,9 @@ pub enum InputError {
         "the checkpoint has {found} columns of sensitivities, but {expected} are requested: resume with the sensitivities that it was written with"
     )]
     Sensitivities {
-        /// Columns requested.
+        /// The number of columns requested.
         expected: usize,
-        /// Number of columns in the checkpoint.
+        /// The number of columns in the checkpoint.
         found: usize,
     },
 
@@ -110,8 +110,8 @@ pub enum InputError {
     #[error("no functional is given: a gradient needs at least one")]
     NoFunctional,
 
-    /// Integrals are read from an integration that has none, or requested of one that has already
-    /// begun.
+    /// Integrals are read from an integration that has none, or are requested of an integration
+    /// that has already begun.
     #[error("integrals must be requested once, before the first step")]
     NoIntegrals,
 
@@ -127,8 +127,8 @@ pub enum InputError {
     )]
     RateJump(RateJump),
 
-    /// Derivatives with respect to parameters are requested, with events whose derivatives with
-    /// respect to the parameters are unknown.
+    /// Derivatives with respect to parameters are requested for a motion with events whose
+    /// derivatives with respect to the parameters are unknown.
     #[error(
         "an event resets the state, but does not say how its function and its reset depend on the parameters: sensitivities need these derivatives"
     )]
@@ -170,7 +170,7 @@ pub enum InputError {
         rows: usize,
         /// Its columns.
         columns: usize,
-        /// Dimension of the vector field.
+        /// The dimension of the vector field.
         expected: usize,
     },
 
@@ -179,11 +179,11 @@ pub enum InputError {
         "a band of {lower} diagonals below the main one and {upper} above is too wide for a Jacobian of {components} × {components}"
     )]
     BandTooWide {
-        /// Diagonals below the main one.
+        /// The number of diagonals below the main one.
         lower: usize,
-        /// Diagonals above the main one.
+        /// The number of diagonals above the main one.
         upper: usize,
-        /// Dimension of the vector field.
+        /// The dimension of the vector field.
         components: usize,
     },
 
@@ -193,24 +193,24 @@ pub enum InputError {
          and {upper} above: widen the band"
     )]
     OutsideBand {
-        /// Name of the component of f.
+        /// The name of the component of f.
         row: String,
-        /// Name of the component of y.
+        /// The name of the component of y.
         column: String,
-        /// Diagonals below the main one.
+        /// The number of diagonals below the main one.
         lower: usize,
-        /// Diagonals above the main one.
+        /// The number of diagonals above the main one.
         upper: usize,
     },
 
     /// The start does not satisfy an inequality.
     #[error("{component} at the start is {value}, but must be {inequality}")]
     Inequality {
-        /// Name of the component.
+        /// The name of the component.
         component: String,
-        /// What it must satisfy.
+        /// The inequality that the component must satisfy.
         inequality: Inequality,
-        /// Its value.
+        /// The value of the component.
         value: f64,
     },
 
@@ -232,9 +232,9 @@ pub enum InputError {
     TimesNotMonotonic {
         /// The position of the time in the list.
         index: usize,
-        /// The time before that one.
+        /// The time that precedes the offending one.
         previous: f64,
-        /// The time that repeats the previous one or reverses the direction.
+        /// The time that repeats the previous time or reverses the direction.
         time: f64,
     },
 
@@ -270,18 +270,18 @@ pub enum InputError {
         requested: f64,
         /// Where the output begins.
         start: f64,
-        /// Where it ends.
+        /// Where the output ends.
         end: f64,
     },
 
-    /// A time lies outside the last internal step, or beyond the next event in it.
+    /// A time lies outside the last internal step, or beyond the next event in that step.
     #[error("t = {requested} lies outside the last step, which covers t = {start} to {end}")]
     OutsideStep {
         /// The time requested.
         requested: f64,
         /// Where the step begins.
         start: f64,
-        /// Where it ends.
+        /// Where the step ends.
         end: f64,
     },
 
@@ -296,11 +296,12 @@ pub enum InputError {
         highest: u32,
     },
 
-    /// Derivatives with respect to parameters are requested from a vector field that has none.
+    /// Derivatives with respect to parameters are requested from a vector field that does not
+    /// provide them.
     #[error("the vector field does not provide its derivatives by the parameters")]
     NoParameterJacobian,
 
-    /// There is no such parameter.
+    /// There is no parameter with the number requested.
     #[error("there is no parameter number {index} (from 0): the number of parameters is {len}")]
     NoParameter {
         /// The number requested.
@@ -309,12 +310,12 @@ pub enum InputError {
         len: usize,
     },
 
-    /// There is no such component.
+    /// There is no component with the number requested.
     #[error("there is no component number {index} (from 0): the number of components is {dim}")]
     NoComponent {
         /// The number requested.
         index: usize,
-        /// Dimension of the vector field.
+        /// The dimension of the vector field.
         dim: usize,
     },
 
@@ -325,7 +326,7 @@ pub enum InputError {
     Exponents {
         /// The number requested.
         count: usize,
-        /// Dimension of the vector field.
+        /// The dimension of the vector field.
         dim: usize,
     },
 

@@ -12,7 +12,7 @@ use crate::error::return_code::Code;
 pub enum Reason {
     /// CVODES returned an error.
     Cvode {
-        /// Its return code.
+        /// The return code of CVODES.
         code: Code,
         /// Its message.
         message: String,
@@ -28,13 +28,13 @@ pub enum Reason {
         last: f64,
     },
 
-    /// Many steps together have covered almost none of the time that is left.
+    /// Many steps together have covered almost none of the remaining time.
     Crawls {
-        /// The number of these steps.
+        /// The number of these short steps.
         steps: u64,
-        /// The time by which they have advanced.
+        /// The time by which the short steps have advanced.
         by: f64,
-        /// Why they are so short.
+        /// Why the steps are so short.
         cause: Shrinks,
     },
 
@@ -50,7 +50,7 @@ pub enum Reason {
 
     /// A terminal event ends the motion before the end of a [functional](crate::Functional).
     EndsEarly {
-        /// Its name.
+        /// The name of the event.
         event: String,
         /// When the event occurred.
         t: f64,
@@ -59,24 +59,24 @@ pub enum Reason {
     /// Within one interval, a tangent vector became a linear combination of the preceding ones, up
     /// to rounding error.
     Collapsed {
-        /// Its number.
+        /// The number of the vector.
         vector: usize,
     },
 
     /// A component became infinite or NaN in a step.
     Overflow {
-        /// Name of the component.
+        /// The name of the component.
         component: String,
         /// NaN or an infinity.
         value: f64,
-        /// The end of that step.
+        /// The end of the step in which this happened.
         t: f64,
     },
 
     /// The state could not be [projected](pc_expr::VectorField::project) onto the surface to which
     /// it belongs.
     Projection {
-        /// The time of that state.
+        /// The time of the state that could not be projected.
         t: f64,
     },
 
@@ -87,7 +87,7 @@ pub enum Reason {
     /// The explicit dependence of the field on time varies faster than floating-point times can
     /// resolve, by more than the tolerances.
     Unresolved {
-        /// Where it was detected.
+        /// The time at which this was detected.
         t: f64,
     },
 
@@ -100,9 +100,9 @@ pub enum Reason {
     /// The motion reaches a corner or a jump of the field and neither crosses nor leaves it: it
     /// would slide along the corner or jump.
     Sliding {
-        /// The expression that vanishes there.
+        /// The expression that vanishes at the corner or jump.
         branch: String,
-        /// When it was reached.
+        /// When the corner or jump was reached.
         t: f64,
     },
 
@@ -117,7 +117,7 @@ pub enum Reason {
 
     /// The function of an event, or of another event evaluated with it, could not be evaluated.
     Event {
-        /// Its name.
+        /// The name of the event.
         event: String,
         /// The time of the state at which the evaluation was tried.
         t: f64,
@@ -125,7 +125,7 @@ pub enum Reason {
 
     /// The reset of an event failed.
     Reset {
-        /// Its name.
+        /// The name of the event.
         event: String,
         /// When the event occurred.
         t: f64,
@@ -133,7 +133,7 @@ pub enum Reason {
 
     /// An event that resets the state is reached at zero speed: sensitivities are unbounded.
     Grazing {
-        /// Its name.
+        /// The name of the event.
         event: String,
         /// When the event occurred.
         t: f64,
@@ -141,9 +141,9 @@ pub enum Reason {
 
     /// Events that reset the state occur together: sensitivities depend on their order.
     Together {
-        /// Their names.
+        /// The names of the events.
         events: Vec<String>,
-        /// When they occurred.
+        /// When the events occurred.
         t: f64,
     },
 
@@ -153,7 +153,7 @@ pub enum Reason {
         event: String,
         /// How often that event has occurred at that time.
         occurrences: usize,
-        /// When they occurred.
+        /// When the resets occurred.
         t: f64,
     },
 
@@ -166,9 +166,9 @@ pub enum Reason {
 
     /// An event [accumulates](crate::Accumulation).
     Accumulation {
-        /// Its name.
+        /// The name of the event.
         event: String,
-        /// How often it has occurred.
+        /// How often the event has occurred.
         occurrences: u64,
         /// The limit of the times of occurrence, if their intervals continue as a geometric series.
         t: f64,

@@ -21,9 +21,9 @@ pub enum SolveError {
     /// memory ran out.
     #[error("{function} failed with code {code}: {message}")]
     Setup {
-        /// The function of SUNDIALS.
+        /// The function of SUNDIALS that failed.
         function: &'static str,
-        /// Its return code.
+        /// The return code of the function.
         code: i32,
         /// The message from SUNDIALS.
         message: String,
@@ -62,11 +62,12 @@ impl SolveError {
 
 /// Why an integration could not go on, and the last state it reached.
 ///
-/// Its [`source`](Error::source) is the cause of [`failure`](IntegrationError::failure).
+/// The [`source`](Error::source) of this error is the cause of
+/// [`failure`](IntegrationError::failure).
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct IntegrationError {
-    /// Why it could not go on.
+    /// Why the integration could not go on.
     pub reason: Reason,
     /// The end of the last successful internal step.
     pub time: f64,

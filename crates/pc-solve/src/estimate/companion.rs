@@ -37,7 +37,7 @@ const MORE_STEPS: u64 = 20;
 ///   rtol below 4·10⁻¹⁵ the companion is no better: at 10⁻¹⁴ the errors of both are rounding
 ///   errors.
 ///
-/// Absolute tolerances are reduced in the same ratio.
+/// Absolute tolerances are reduced by the same factor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Companion {
     options: Options,

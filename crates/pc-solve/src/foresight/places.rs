@@ -53,9 +53,9 @@ pub(crate) struct Places {
     pub(crate) found: Vec<f64>,
     /// Those of these times that come from the motion along a step that has been tried.
     along: Vec<f64>,
-    /// A time beyond which there are too many to examine in one step.
+    /// A time beyond which there are too many times to examine in one step.
     pub(crate) crowded: Option<f64>,
-    /// The times of fast oscillations, and their number.
+    /// The times to examine because of fast oscillations, and how many there are.
     many: Vec<f64>,
     crowd: usize,
     unknown: bool,

@@ -62,7 +62,7 @@ use crate::integration::stepper::Stepper;
 /// At an event the state is y⁺: states are continuous from the right in the direction of
 /// integration.
 pub struct Integration<S, E = NoEvents> {
-    /// The time of the method is that of this integration.
+    /// The method; its time is the time of this integration.
     pub(crate) engine: S,
     pub(crate) events: E,
     pub(crate) histories: Vec<History>,
@@ -82,7 +82,7 @@ pub struct Integration<S, E = NoEvents> {
     pub(crate) noise: Vec<f64>,
     /// The sign that each of the `due` functions takes next.
     pub(crate) beyond: Vec<f64>,
-    /// y(`time`), unless `time` is that of the front.
+    /// y(`time`), unless `time` is the time of the front.
     pub(crate) output: Vec<f64>,
     /// Room for the end of a step.
     pub(crate) ahead: Vec<f64>,
@@ -100,7 +100,7 @@ pub struct Integration<S, E = NoEvents> {
     pub(crate) restarted: bool,
     /// Whether the motion has been restarted, for example by a reset.
     pub(crate) jumped: bool,
-    /// Its pace.
+    /// The pace of the integration.
     pub(crate) pace: Pace,
 }
 
@@ -109,9 +109,9 @@ pub struct Integration<S, E = NoEvents> {
 pub enum Ending {
     /// All output times were reached.
     Completed,
-    /// An observer stopped it.
+    /// An observer stopped the integration.
     Stopped,
-    /// A terminal event.
+    /// A terminal event ended the integration.
     Event {
         /// The index of the event.
         event: usize,
@@ -165,10 +165,10 @@ impl<S: Stepper> Integration<S> {
 
     /// Adds events to this integration, from its current time on.
     ///
-    /// Its [sensitivities](crate::Cvode::with_sensitivities), if any, are those of the motion with
-    /// its events: the sensitivities jump at resets. For these sensitivities, resets are also
-    /// applied to nearby states, and events with resets need [derivatives](Events::by_parameter)
-    /// with respect to the parameters of the sensitivities.
+    /// The [sensitivities](crate::Cvode::with_sensitivities), if any, are those of the motion with
+    /// its events: they jump at resets. For these sensitivities, resets are also applied to nearby
+    /// states, and events with resets need [derivatives](Events::by_parameter) with respect to the
+    /// parameters of the sensitivities.
     ///
     /// # Errors
     /// [`SolveError::Integration`] with [`Reason::Event`](crate::Reason::Event) if an event

@@ -17,8 +17,8 @@ pub trait Observer {
         ControlFlow::Continue(())
     }
 
-    /// The end (t, y⁻) of a step, or of the part of it before an event; called before the outputs
-    /// inside the step, to show progress or to stop.
+    /// The end (t, y⁻) of a step, or of the part of a step before an event; called before the
+    /// outputs inside the step, to show progress or to stop.
     fn step(&mut self, _t: f64, _y: &[f64]) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }

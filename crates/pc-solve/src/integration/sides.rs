@@ -45,7 +45,7 @@ struct Place<'a> {
     direction: f64,
     /// The smallest significant size of a component.
     least: f64,
-    /// The longest time that matters.
+    /// The longest time span that matters.
     span: f64,
     /// The functions of the surfaces at this place, with the field held on the sides that it had
     /// before.

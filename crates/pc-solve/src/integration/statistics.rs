@@ -62,7 +62,8 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// The sum of these statistics and those of an integration that continued from there.
+    /// The sum of these statistics and those of an integration that continued from where this one
+    /// ended.
     pub fn followed_by(&self, later: &Statistics) -> Statistics {
         Statistics {
             steps: self.steps.saturating_add(later.steps),

@@ -70,7 +70,7 @@ impl Trajectory {
     /// The state at `times()[i]`, of length [`dim`](Trajectory::dim).
     ///
     /// # Panics
-    /// If `i` is not less than [`len`](Trajectory::len).
+    /// Panics if `i` is not less than [`len`](Trajectory::len).
     pub fn state(&self, i: usize) -> &[f64] {
         &self.states[i * self.dim..(i + 1) * self.dim]
     }
@@ -83,7 +83,7 @@ impl Trajectory {
     /// Component `j` at each output time.
     ///
     /// # Panics
-    /// If `j` is not less than [`dim`](Trajectory::dim).
+    /// Panics if `j` is not less than [`dim`](Trajectory::dim).
     pub fn component(&self, j: usize) -> impl Iterator<Item = f64> {
         assert!(j < self.dim, "component {j} of {}", self.dim);
         self.iter().map(move |(_, y)| y[j])

@@ -48,7 +48,7 @@ impl SensitivityTrajectory {
     /// of component k for column j.
     ///
     /// # Panics
-    /// If `i` is not less than the number of outputs.
+    /// Panics if `i` is not less than the number of outputs.
     pub fn matrix(&self, i: usize) -> &[f64] {
         let len = self.motion.dim() * self.columns;
         &self.matrices[i * len..(i + 1) * len]
@@ -57,7 +57,7 @@ impl SensitivityTrajectory {
     /// Column `j` of S at output time `i`.
     ///
     /// # Panics
-    /// If there is no such output or column.
+    /// Panics if there is no such output or column.
     pub fn column(&self, i: usize, j: usize) -> &[f64] {
         assert!(j < self.columns, "column {j} of {}", self.columns);
         let dim = self.motion.dim();

@@ -198,7 +198,7 @@ impl Options {
 
     /// The relative tolerance for methods whose states are rounded: at least ε, since a smaller
     /// error would not show, and steps shortened to reach it would only add rounding errors. CVODES
-    /// needs at least twice that.
+    /// needs at least 2 ε.
     pub(crate) fn resolved_tolerance(&self) -> f64 {
         let least = match self.method {
             Method::Adams | Method::Bdf => 2.0 * f64::EPSILON,

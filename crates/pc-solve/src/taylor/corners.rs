@@ -7,7 +7,8 @@ const RESOLVED: f64 = 1e-14;
 const AT_ZERO: f64 = 1e-13;
 
 /// The first s in [0, length] at which the polynomial with these coefficients leaves `side`; the
-/// polynomial begins on that side, or at zero up to rounding error. None if it stays on that side.
+/// polynomial begins on that side, or at zero up to rounding error. None if the polynomial stays on
+/// that side.
 ///
 /// On an interval around m with coefficients d_k there, |p(s) − d_0| ≤ Σ |d_k| rᵏ: where that is
 /// less than |d_0| there is no root, and where Σ k |d_k| rᵏ⁻¹, k ≥ 2, is less than |d_1| there is

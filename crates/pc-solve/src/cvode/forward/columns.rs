@@ -7,7 +7,7 @@ use crate::cvode::handles::{NonlinearIteration, Vector};
 
 /// The data of the sensitivities of an integration.
 pub(crate) struct Forward {
-    /// Kept alive because CVODES refers to it.
+    /// The nonlinear solver, kept alive because CVODES refers to it.
     pub(super) _nonlinear_iteration: NonlinearIteration,
     /// Room for the columns, written by CVODES.
     pub(crate) columns: Vec<Vector>,

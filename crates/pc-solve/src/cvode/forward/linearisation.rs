@@ -22,8 +22,8 @@ enum Products {
 ///
 /// Products are computed by the field if it can do so, else with its Jacobian, else as central
 /// difference quotients. The relative error of a quotient is about ε^(2/3) = 4e-11 if σ|v| is
-/// ε^(1/3) times the size of the state, where truncation and rounding errors are about equal. That
-/// size is max
+/// ε^(1/3) times the size of the state, where truncation and rounding errors are about equal. The
+/// size of the state is max
 /// |yᵢ|, but at least atol/rtol, the smallest significant size.
 #[derive(Debug, Default)]
 pub(crate) struct Linearisation {

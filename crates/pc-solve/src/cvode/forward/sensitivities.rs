@@ -20,8 +20,8 @@ use crate::integration::checks::{check_length, finite, positive};
 ///
 /// If the states lie on a surface that depends on the parameters, so does y₀: its derivatives are
 /// given by [`by_parameter_from`](Sensitivities::by_parameter_from). Columns that begin tangent to
-/// the surface stay tangent to it within the tolerances; they are integrated along the
-/// [projected](VectorField::project) states, but not projected themselves.
+/// the surface stay tangent to it within the tolerances; these columns are integrated along the
+/// [projected](VectorField::project) states, but are not projected themselves.
 ///
 /// ```
 /// use pc_solve::{Options, Sensitivities, from_fn, Solve};
@@ -137,9 +137,9 @@ impl Sensitivities {
         Sensitivities { error_control, ..self }
     }
 
-    /// Sets the scales p̄ of the parameters or start values to which the columns refer, positive,
-    /// one for each column: p̄ s has the unit of the state, and the absolute tolerance of the
-    /// column s is that of the state divided by p̄.
+    /// Sets the scales p̄ of the parameters or initial values to which the columns refer, one
+    /// positive number for each column: p̄ s has the unit of the state, and the absolute tolerance
+    /// of the column s is that of the state divided by p̄.
     ///
     /// By default, p̄ is the [size of a parameter](VectorField::parameter_size), or if that is
     /// unknown, the value for which p̄ ∂f/∂p at the start is as large as f; for a component of the
@@ -148,13 +148,13 @@ impl Sensitivities {
         Sensitivities { scales: Some(scales.into()), ..self }
     }
 
-    /// Sets the relative and absolute tolerance of the columns, positive; by default, they are
+    /// Sets the relative and absolute tolerance of the columns, both positive; by default, they are
     /// those of the state, [scaled](Sensitivities::scales).
     pub fn tolerances(self, relative: f64, absolute: f64) -> Self {
         Sensitivities { tolerances: Some((relative, absolute)), ..self }
     }
 
-    /// Number of columns.
+    /// The number of columns.
     pub fn len(&self) -> usize {
         self.columns.len()
     }

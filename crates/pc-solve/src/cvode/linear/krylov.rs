@@ -46,7 +46,8 @@ impl Krylov {
         Krylov { restarts, ..self }
     }
 
-    /// Sets the tolerance of the residual, relative to that of Newton's iteration; positive.
+    /// Sets the tolerance of the residual, relative to the tolerance of Newton's iteration; it is
+    /// positive.
     pub fn tolerance(self, tolerance: f64) -> Self {
         Krylov { tolerance, ..self }
     }

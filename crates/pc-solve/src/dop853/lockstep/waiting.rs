@@ -12,7 +12,7 @@ use super::members::{Members, Source};
 pub(super) struct Waiting<'a, N> {
     kernels: &'a Kernels,
     names: [Option<N>; LANES],
-    /// The start of each member, in its lane.
+    /// The start of each member, in the lane of the member.
     frame: Vec<Lanes>,
 }
 
