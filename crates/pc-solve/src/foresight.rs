@@ -1,5 +1,5 @@
-//! What the field may do between its evaluations, examined up to the end of the next step; for any
-//! method.
+//! Examination, for any method, of what the field may do between its evaluations, up to the end of
+//! the next step.
 //!
 //! A method evaluates f at only a few times in each step. `places` are the times in a step that a
 //! method has to examine. If the [profile](pc_expr::TimeDependence::Known) of a field is known,

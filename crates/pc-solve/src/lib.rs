@@ -26,7 +26,7 @@
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//! [`from_fn`] takes further closures:[a Jacobian](FnField::with_jacobian), [its
+//! [`from_fn`] takes further closures: [a Jacobian](FnField::with_jacobian), [its
 //! pattern](FnField::with_sparsity), [products with it](FnField::with_jvp), [a
 //! projection](FnField::with_projection) to invariants. Failures are values: a [`SolveFailure`]
 //! holds the outputs reached before the failure, and the [`SolveError`] that ended the motion.
@@ -44,9 +44,9 @@
 //! # Events
 //!
 //! [`Solve`] describes a motion to be integrated, with a method and [`Events`]: zeros of functions,
-//! which end the motion or [reset](FnEvents::with_reset) its state. Each is located to rounding
-//! error, even if several lie in one step or one reset causes another. Impacts that follow one
-//! another ever faster end the motion where they [accumulate](Accumulation).
+//! which end the motion or [reset](FnEvents::with_reset) its state. Each zero is located to
+//! rounding error, even if several lie in one step or one reset causes another. Impacts that follow
+//! one another ever faster end the motion where they [accumulate](Accumulation).
 //! ```
 //! use pc_solve::{Event, FnEvents, Solve, from_fn};
 //!
@@ -99,8 +99,8 @@
 //! [`Solve::sensitivities`] integrates S = ∂y/∂(p, y₀) along with the motion; S jumps where an
 //! event resets the state. For many parameters and a single quantity g of the motion,
 //! [`adjoint_gradient`] integrates backwards instead; g is a [`Functional`]. [`Solve::integrals`]
-//! integrates quantities along the motion, and [`lyapunov_exponents`] measures the growth of its
-//! tangent vectors.
+//! integrates quantities along the motion, and [`lyapunov_exponents`] measures the growth of
+//! tangent vectors along it.
 //!
 //! # Many motions
 //!

@@ -17,7 +17,8 @@ use crate::integration::limits::Limits;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::{LastStep, Stepper};
 
-/// A step that would end less than this fraction of its length before a stop time or a break ends there.
+/// A step that would end just before a stop time or a break, by less than this fraction of its
+/// length, is made to end there.
 const NEAR: f64 = 1e-9;
 /// The relative and absolute tolerance of the state that events use, since a fixed-step method has
 /// none.

@@ -15,8 +15,9 @@ use crate::integration::stepper::{LastStep, Stepper};
 use crate::settings::options::Options;
 
 /// A BDF step of length h counts as non-stiff if h ρ is below this. Such a step takes about two
-/// evaluations of f and linear solves; an explicit step takes twelve evaluations and is stable up
-/// to h = 6.1/ρ, so that the explicit method costs no more, even where stability limits its steps.
+/// evaluations of f and two linear solves; an explicit step takes twelve evaluations and is stable
+/// up to h = 6.1/ρ, so that the explicit method costs no more, even where stability limits its
+/// steps.
 const STIFF: f64 = 1.0;
 /// One in this many BDF steps is examined, …
 const EVERY: u64 = 4;
@@ -31,10 +32,10 @@ const DOUBLINGS: u32 = 8;
 /// The integration begins with the explicit method. Where [stiffness](Dop853::stiff_from) is
 /// detected, CVODE continues from the end of that step at order 1; once the length of the steps
 /// times an estimate of the largest eigenvalue of ∂f/∂y has been below 1 for many steps, it returns
-/// to the explicit method, which is stable up to 6.1. Each return doubles the number of steps
-/// needed for the next one, to prevent oscillation between the methods. The motion alone decides:
-/// the same input gives the same steps. A motion resumed from a checkpoint always begins with the
-/// explicit method.
+/// to the explicit method, which is stable while this product is at most 6.1. Each return doubles
+/// the number of steps needed for the next one, to prevent oscillation between the methods. The
+/// motion alone decides: the same input gives the same steps. A motion resumed from a checkpoint
+/// always begins with the explicit method.
 pub struct Auto<F: VectorField> {
     /// The current method; none only while one method replaces the other.
     engine: Option<Engine<F>>,

@@ -1,8 +1,9 @@
 //! Checkpoints, from which a motion resumes with the same numbers to the last bit.
 //!
 //! A multistep method depends on its history. So a motion with checkpoints restarts at each of
-//! them, interrupted or not: everything after a checkpoint depends only on its contents. This
-//! changes the motion within its tolerance, and costs the steps in which the order grows again.
+//! them, whether it is interrupted or not: everything after a checkpoint depends only on its
+//! contents. This changes the motion within its tolerance, and costs the steps in which the order
+//! grows again.
 //! ```
 //! use pc_solve::{Checkpoint, Integration, Options, from_fn};
 //!

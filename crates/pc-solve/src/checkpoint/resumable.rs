@@ -17,9 +17,9 @@ use crate::solve::solution::Solution;
 /// It restarts at each checkpoint with the vector field and the events made by `parts`; in the legs
 /// after a reset, a field that conserves an integral [keeps](VectorField::restart) the value of the
 /// integral at the checkpoint. The part of a step before an event counts as a step; a checkpoint at
-/// its end follows all events there. So a motion resumed from any of its checkpoints gives the same
-/// outputs, the same occurrences and the same ending, bit for bit, as one that was never
-/// interrupted.
+/// the end of this part follows all events there. So a motion resumed from any of its checkpoints
+/// gives the same outputs, the same occurrences and the same ending, bit for bit, as a motion that
+/// was never interrupted.
 ///
 /// ```
 /// use std::{num::NonZeroU64, ops::ControlFlow};
@@ -71,7 +71,8 @@ impl<P, M> Resumable<P, M> {
         Resumable { every, ..self }
     }
 
-    /// The states at `times`, the first of which are the outputs of the checkpoint, and the occurrences of events.
+    /// Returns the states at `times`, which begin with the output times of the checkpoint, and the
+    /// occurrences of events.
     ///
     /// Each checkpoint, including the first, is passed to `save`, and the last one again with
     /// `true` if the motion fails or is stopped by `step`, which is called with the end of each

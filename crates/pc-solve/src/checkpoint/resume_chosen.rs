@@ -14,7 +14,7 @@ impl<F: VectorField> Integration<Chosen<F>> {
     /// Begins at a checkpoint, which may be the start of a motion, with the method of the options
     /// and without its events: [`with_events_of`](Integration::with_events_of) adds them.
     ///
-    /// With sensitivities the method is one of those of CVODES, which is Adams for
+    /// With sensitivities the method is one of those of CVODES, namely Adams for
     /// [`Method::Auto`](crate::Method::Auto); the columns are those of the checkpoint or, at the
     /// start of a motion, those of `sensitivities`.
     ///

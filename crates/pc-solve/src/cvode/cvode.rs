@@ -39,7 +39,7 @@ pub struct Cvode<F> {
     pub(crate) time: f64,
     /// The end of the last step of CVODES.
     pub(crate) step_time: f64,
-    /// 1 The direction of time, 1 or −1, once the first step has been made.
+    /// The direction of time, 1 or −1, once the first step has been made.
     pub(crate) direction: Option<f64>,
     pub(super) initial_step: Option<f64>,
     pub(super) stop_time: Option<f64>,

@@ -75,8 +75,8 @@ impl Foresight {
         atol / self.relative_tolerance
     }
 
-    /// max |δᵢ|/(rtol |yᵢ| + atolᵢ) for the defect at the last time examined, `since` after the
-    /// last step.
+    /// max |δᵢ|/(rtol |yᵢ| + atolᵢ) for the defect at the last time examined, which lies `since`
+    /// after the last step.
     ///
     /// The part of the defect that the next term of the polynomial would explain is subtracted: a
     /// method that has just raised its order includes that term, and makes long steps with it.

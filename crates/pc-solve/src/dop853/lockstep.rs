@@ -15,7 +15,7 @@
 //! error of that integration counts; so is a member that turns out to be stiff under
 //! [`Method::Auto`](crate::Method::Auto).
 //!
-//! `plan` holds what all members share, if lanes can integrate it; `field` evaluates f on a tape;
+//! `plan` holds what all members share, if lanes can integrate them; `field` evaluates f on a tape;
 //! `step`, `start` and `dense` make the tapes of a `problem`, which `kernels` compiles and a
 //! `shelf` caches; `stiffness` counts suspect steps. An `octet` steps eight lanes; a `block`
 //! alternates between two of them, and fills their lanes with members from `waiting`.

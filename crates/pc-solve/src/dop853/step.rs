@@ -10,8 +10,8 @@ use crate::error::{Reason, SolveError};
 use crate::integration::breaks::next_break;
 use crate::integration::stepper::Stepper;
 
-/// A step that would end within this fraction of its length before a stop time or a break ends
-/// there.
+/// A step that would end just before a stop time or a break, within this fraction of its length, is
+/// made to end there.
 const LEFT: f64 = 0.01;
 /// The first guess for the length of the first step if the state or its rates vanish.
 pub(super) const FIRST: f64 = 1e-6;

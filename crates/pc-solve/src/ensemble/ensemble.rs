@@ -57,8 +57,8 @@ const WINDOW: usize = 64;
 /// memory and end the program.
 const MOST_THREADS: usize = 1024;
 
-/// The stack size of a thread in bytes, the usual one of the main thread: making a member may
-/// recurse deeply.
+/// The stack size of a thread in bytes, the usual size for the main thread: making a member may
+/// involve deep recursion.
 const STACK: usize = 8 << 20;
 
 /// Options for the computation of an ensemble.

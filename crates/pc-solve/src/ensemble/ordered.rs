@@ -8,8 +8,8 @@ use std::thread;
 
 use crate::ensemble::stop::Stop;
 
-/// Hands members out in order, receives their results in any order, and delivers these in order.
-/// No member that has begun is `window` or more ahead of the one to be delivered next.
+/// Hands members out in order, receives their results in any order, and delivers the results in
+/// order. No member that has begun is `window` or more ahead of the one to be delivered next.
 pub(super) struct Queue<'a, T> {
     end: u64,
     window: u64,

@@ -32,10 +32,10 @@ const MORE_STEPS: u64 = 20;
 ///   tolerance if that is less: the states of the companion carry their rounding errors along. If
 ///   the motion itself uses Taylor's method at such a tolerance, the errors of both are rounding
 ///   errors, made along different steps, and the distance is of the size of these errors.
-/// - Any other motion has a companion at a thousandth of its tolerance, at least 10⁻¹⁵, integrated
-///   with [`Method::Auto`], or with [`Method::Bdf`] if the motion uses that method. For a motion at
-///   rtol below 4·10⁻¹⁵ the companion is no better: at 10⁻¹⁴ the errors of both are rounding
-///   errors.
+/// - Any other motion has a companion at a thousandth of its tolerance, but at least 10⁻¹⁵,
+///   integrated with [`Method::Auto`], or with [`Method::Bdf`] if the motion uses that method. For
+///   a motion at rtol below 4·10⁻¹⁵ the companion is no better: at 10⁻¹⁴ the errors of both are
+///   rounding errors.
 ///
 /// Absolute tolerances are reduced by the same factor.
 #[derive(Debug, Clone, PartialEq)]

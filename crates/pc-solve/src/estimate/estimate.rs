@@ -60,7 +60,7 @@ impl ErrorEstimate {
     }
 
     /// Like [`of`](ErrorEstimate::of), but passes the end (t, ỹ⁻) of each step of the companion to
-    /// `step`, to show progress or to stop it.
+    /// `step`, to show progress or to stop the companion.
     pub fn observed<F: VectorField>(
         motion: &Solution,
         (mut field, t0, y0): (F, f64, &[f64]),

@@ -160,7 +160,7 @@ pub struct Occurrence {
 }
 
 /// When occurrences of an event count as accumulated, like the bounces of a ball that comes to
-/// rest: an integration from event to event cannot pass that time.
+/// rest: an integration from event to event cannot pass the time at which they accumulate.
 ///
 /// Occurrences count as accumulated if the last intervals between them shrink steadily and,
 /// continued as a geometric series, sum to less than a small fraction of the first of the shrinking
@@ -180,7 +180,7 @@ pub struct Accumulation {
 }
 
 impl Default for Accumulation {
-    /// 6 The default: 6 occurrences and a remaining fraction of 1e-5.
+    /// The default: 6 occurrences and a remaining fraction of 1e-5.
     fn default() -> Self {
         Accumulation { occurrences: 6, within: 1e-5 }
     }

@@ -51,7 +51,7 @@ pub(crate) struct Places {
     pub(crate) limited: u64,
     /// The times to examine in the step ahead, ordered in its direction.
     pub(crate) found: Vec<f64>,
-    /// Those of these times that come from the motion along a step that has been tried.
+    /// The times in `found` that come from the motion along a step that has been tried.
     along: Vec<f64>,
     /// A time beyond which there are too many times to examine in one step.
     pub(crate) crowded: Option<f64>,

@@ -10,7 +10,7 @@ const PLACES: usize = 16;
 /// distance.
 ///
 /// `rates` writes f at a fraction of the way to the nearby time, and the tolerances of the state
-/// there; it returns false if f fails; handling the failure is left to the method.
+/// there; it returns false if f fails, and handling the failure is left to the method.
 pub(crate) fn scatters(
     dim: usize,
     length: f64,

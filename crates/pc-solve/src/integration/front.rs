@@ -12,8 +12,8 @@ use crate::integration::held_sides::write_functions;
 use crate::integration::integration::Integration;
 use crate::integration::stepper::Stepper;
 
-/// While the motion slides along surfaces, each step is divided into this many times more parts for
-/// the search.
+/// While the motion slides along surfaces, each step is divided into this many times as many parts
+/// for the search.
 const ALONG_SURFACES: u32 = 16;
 
 impl<S: Stepper, E: Events> Integration<S, E> {

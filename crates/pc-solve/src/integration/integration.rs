@@ -41,10 +41,10 @@ use crate::integration::stepper::Stepper;
 /// resets are applied one after the other, in the order of the events. After a reset the
 /// integration [restarts](Integration::restart) with the same options.
 ///
-/// A function that reaches or crosses zero, but is back on its original side within that time, only
-/// touches zero: no event occurs. For a function that reaches zero and stays there, the event
-/// occurs on arrival, not on departure. All this holds for the function as computed, with its
-/// rounding errors.
+/// A function that reaches or crosses zero, but is back on its original side within this
+/// resolution, only touches zero: no event occurs. For a function that reaches zero and stays
+/// there, the event occurs on arrival, not on departure. All this holds for the function as
+/// computed, with its rounding errors.
 ///
 /// If the reset of one event makes the function of another change sign in the direction of that
 /// other event, the other event occurs at the same time, from the state after the reset, and so on
@@ -66,7 +66,7 @@ pub struct Integration<S, E = NoEvents> {
     pub(crate) engine: S,
     pub(crate) events: E,
     pub(crate) histories: Vec<History>,
-    /// 1 The direction of time, 1 or −1, once the first step has been made.
+    /// The direction of time, 1 or −1, once the first step has been made.
     pub(crate) direction: Option<f64>,
     /// The time up to which events are known, with the event functions there, and y.
     pub(crate) front: Sample,
@@ -82,7 +82,7 @@ pub struct Integration<S, E = NoEvents> {
     pub(crate) noise: Vec<f64>,
     /// The sign that each of the `due` functions takes next.
     pub(crate) beyond: Vec<f64>,
-    /// y(`time`), unless `time` is the time of the front.
+    /// The state y(`time`), unless `time` is the time of the front.
     pub(crate) output: Vec<f64>,
     /// Room for the end of a step.
     pub(crate) ahead: Vec<f64>,
@@ -230,7 +230,8 @@ impl<S: Stepper> Integration<S> {
         Ok(self.state())
     }
 
-    /// Takes one step in the direction of `towards` and returns its end, which may lie beyond.
+    /// Takes one step in the direction of `towards` and returns its end, which may lie beyond that
+    /// time.
     ///
     /// # Errors
     /// As for [`step`](Integration::step).

@@ -304,8 +304,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 
     /// Whether the [projection](VectorField::project) of the field moves the result of the reset.
-    /// If not, the projection is not part of R: derivatives with respect to parameters that move
-    /// the surface point out of the surface, and must not be projected onto it.
+    /// If not, the projection is not part of R: the derivatives with respect to parameters that
+    /// move the surface have components out of the surface, and must not be projected onto it.
     fn is_projected(
         &mut self,
         event: usize,

@@ -84,8 +84,8 @@ pub trait Stepper {
     /// Restarts from y(t) = y, validated by the caller, with these [columns](Stepper::columns);
     /// statistics continue.
     ///
-    /// If a direction is given, the next step must go in that direction; otherwise it may go either
-    /// way.
+    /// If a direction is given, the next step must go in that direction; otherwise it may go in
+    /// either direction.
     ///
     /// # Errors
     /// [`SolveError`] if this is not possible; the stepper is then unchanged.

@@ -84,7 +84,8 @@ impl<F: VectorField> VectorField for WithVariation<F> {
         self.field.enter(t, end)
     }
 
-    /// The surfaces depend on y; the integration evaluates their functions with y alone.
+    /// The surfaces are those of the field for y; the integration evaluates their functions with y
+    /// alone.
     fn switching(&mut self) -> Option<&mut dyn Switching> {
         self.field.switching()
     }
@@ -106,7 +107,7 @@ pub(crate) struct Explicit<S> {
     parameters: Vec<Option<usize>>,
     dim: usize,
     relative_tolerance: f64,
-    /// The state at the time inside the last step that is being read, and the columns there.
+    /// The state and the columns at the time, inside the last step, that is being read.
     state: Vec<f64>,
     inside: Option<Vec<f64>>,
     /// The columns at the start of the last step.

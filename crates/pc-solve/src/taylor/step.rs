@@ -7,7 +7,8 @@ use crate::integration::breaks::next_break;
 use crate::integration::stepper::Stepper;
 use crate::taylor::stepper::Taylor;
 
-/// A step that would end less than this fraction of its length before a stop time or a break ends there.
+/// A step that would end just before a stop time or a break, by less than this fraction of its
+/// length, is made to end there.
 const NEAR: f64 = 1e-9;
 /// A step is at most this many times as long as the previous step or as the time to its target,
 /// whichever is longer.

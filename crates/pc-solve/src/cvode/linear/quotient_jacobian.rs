@@ -63,7 +63,7 @@ pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
 }
 
 impl Quotients {
-    /// Passes each entry k of ∂f/∂y at z to `write`; `f` is f at z.
+    /// Passes each entry k of ∂f/∂y at z to `write`; `f` holds the value of f at z.
     fn evaluate<F: VectorField>(
         &mut self,
         callbacks: &mut Callbacks<F>,

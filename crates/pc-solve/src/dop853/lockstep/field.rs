@@ -6,8 +6,8 @@ use pc_expr::{Binary, LaneTape, LaneValue, Program};
 /// its parameters.
 pub(super) struct Field<'a> {
     pub(super) program: &'a Program,
-    /// The number of pivots that are watched, and the ratio to the largest size below which a pivot
-    /// counts as zero.
+    /// The number of pivots that are watched, and the ratio of a pivot to the largest size below
+    /// which the pivot counts as zero.
     pub(super) pivots: usize,
     pub(super) vanishing: f64,
     /// The values that the program reads as its parameters.

@@ -165,7 +165,8 @@ impl<'a, N> Octet<'a, N> {
         }
     }
 
-    /// Evaluates y at the fraction s of the last step of a lane; returns whether it is valid.
+    /// Evaluates y at the fraction s of the last step of a lane; returns whether the state is
+    /// valid.
     fn inside(&mut self, lane: usize, s: f64) -> bool {
         let Some(inside) = &self.kernels.inside else { return false };
         let terms = TERMS * self.kernels.dim;

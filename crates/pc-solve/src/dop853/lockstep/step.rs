@@ -1,7 +1,7 @@
 //! The tape of a step.
 //!
-//! The step and its errors are those of [`stages`](super::super::stages), its length that of
-//! [`control`](super::super::control), but with roots and weights computed to a few digits only,
+//! The step and its errors are those of [`stages`](super::super::stages), and its length is that of
+//! [`control`](super::super::control), but with roots and weights computed to only a few digits,
 //! which is sufficient for a length.
 
 use pc_expr::{Binary, Fused, LaneTape, LaneValue};
