@@ -1,5 +1,5 @@
 //! The method that switches during the integration: explicit where the motion is not stiff,
-//! implicit where it is.
+//! implicit where it is stiff.
 //!
 //! `switch` holds the rules for switching, `growth` estimates the largest eigenvalue of ∂f/∂y,
 //! `stepper` implements the method.

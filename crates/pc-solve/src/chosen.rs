@@ -1,4 +1,4 @@
-//! The method that options choose.
+//! The method chosen in the options.
 
 use pc_expr::{Method, PolynomialMotion, VectorField};
 
@@ -18,10 +18,11 @@ use crate::integration::stepper::{LastStep, Stepper};
 use crate::settings::options::Options;
 use crate::taylor::stepper::Taylor;
 
-/// The method that [`Options`] choose.
+/// The method chosen in [`Options`].
 ///
 /// Its variable of integration is the time since the start, so that the steps of a motion from t₀ =
-/// 10⁹ have as many digits as those of one from 0; the field is evaluated at t₀ plus that time.
+/// 10⁹ have as many digits as those of a motion from 0; the field is evaluated at t₀ plus that
+/// time.
 #[derive(Debug)]
 pub struct Chosen<F: VectorField> {
     method: Engine<Since<F>>,
@@ -104,7 +105,7 @@ impl<F: VectorField> Chosen<F> {
         each!(&self.method, method => method.field())
     }
 
-    /// The time t that lies s after the origin.
+    /// The time t at a distance s after the origin.
     fn at(&self, s: f64) -> f64 {
         match self.stop_time {
             Some(stop) if s == stop - self.origin => stop,
@@ -112,7 +113,7 @@ impl<F: VectorField> Chosen<F> {
         }
     }
 
-    /// Converts a time in the last step to the time since the origin; one that rounding puts
+    /// Converts a time in the last step to the time since the origin; a time that rounding puts
     /// outside the step is moved to the nearer end.
     fn inside(&self, t: f64) -> f64 {
         if self.origin == 0.0 {
@@ -135,7 +136,7 @@ impl<F: VectorField> Chosen<F> {
 }
 
 /// The field with its time counted from the start, the start in terms of that time, and the options
-/// for it.
+/// in terms of that time.
 fn counted<F: VectorField>(field: F, t0: f64, options: &Options) -> (Since<F>, f64, Options) {
     if !t0.is_finite() {
         return (Since::new(field, 0.0), t0, options.clone()); // which the method refuses

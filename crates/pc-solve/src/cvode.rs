@@ -1,12 +1,13 @@
 //! A safe interface to SUNDIALS CVODES.
 //!
-//! `context`, `handles` and `callback` are the boundary to C: owned objects, vector fields as
-//! callbacks. `cvode` makes steps; `setup` constructs it, `interpolation` and `projection` give
-//! states inside steps; `integrals` are computed as a `quadrature`, through the
+//! `context`, `handles` and `callback` form the boundary with C: owned objects, vector fields as
+//! callbacks. `cvode` makes steps; `setup` constructs the method, `interpolation` and `projection`
+//! give states inside steps; `integrals` are computed as a `quadrature`, through the
 //! `quadrature_callbacks`; `breaks` and `foresee`, with `foresight`, handle fields that are not
 //! smooth in time; `restart` continues after jumps; `statistics` counts the work. `stepper`
-//! implements the interface of a method, `integration` starts an integration with it. `linear`
-//! solves its linear systems, `forward` its equations of variation. `version` names the library.
+//! implements the interface of a method, and `integration` starts an integration with CVODES.
+//! `linear` solves the linear systems of the method, `forward` its equations of variation.
+//! `version` gives the version of the library.
 
 pub(crate) mod breaks;
 pub(crate) mod callback;

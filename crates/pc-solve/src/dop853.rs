@@ -9,10 +9,10 @@
 //! detected as in [Hairer, Wanner 1996], IV.2.
 //!
 //! Read `stepper` first: `setup` starts an integration, `step` makes a step from `stages`, of a
-//! length given by `control`; `dense` gives the states inside it, `hindsight` checks them for
-//! features of f that the stages missed, `stiffness` detects when stability limits the steps.
-//! `coefficients` holds the tables, `arithmetic` the sums over stages. `lockstep` integrates many
-//! members of an ensemble at once.
+//! length given by `control`; `dense` gives the states inside the step, `hindsight` checks these
+//! states for features of f that the stages missed, `stiffness` detects when stability limits the
+//! steps. `coefficients` holds the tables, and `arithmetic` computes the sums over stages.
+//! `lockstep` integrates many members of an ensemble at once.
 
 mod arithmetic;
 mod coefficients;

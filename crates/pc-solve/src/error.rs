@@ -1,8 +1,8 @@
 //! Errors of integration.
 //!
-//! `input` has the errors of a problem or an option, found before the first step; `solve` those of
-//! an integration, with their `reason` and possibly a `return_code` of CVODES; `non_finite` those
-//! of a number that is NaN or infinite.
+//! `input` has the errors in a problem or an option, which are found before the first step; `solve`
+//! has the errors of an integration, with their `reason` and possibly a `return_code` of CVODES;
+//! `non_finite` has the errors about a number that is NaN or infinite.
 
 pub(crate) mod input;
 pub(crate) mod non_finite;

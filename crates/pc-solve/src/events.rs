@@ -1,9 +1,9 @@
 //! Events: their functions, and how their times are located.
 //!
-//! `events` defines events given by closures, and occurrences; `samples` holds values along a step,
-//! which `closer` refines where there is doubt and `edges` extends where functions have no value;
-//! `root_finding` locates the first zero along a step, which `breaks` distinguishes from jumps and
-//! poles.
+//! `events` defines events given by closures, and occurrences; `samples` holds values along a step;
+//! `closer` refines the samples where there is doubt, and `edges` extends them where functions have
+//! no value; `root_finding` locates the first zero along a step, and `breaks` distinguishes zeros
+//! from jumps and poles.
 
 pub(crate) mod breaks;
 pub(crate) mod closer;

@@ -1,15 +1,16 @@
-//! Integration by any method: one engine for outputs, events, dense output and checkpoints.
+//! Integration with any method: one engine for outputs, events, dense output and checkpoints.
 //!
 //! A [`VectorField`](pc_expr::VectorField), a start and a method give states, occurrences and
-//! [`Statistics`](statistics::Statistics). Read `stepper` first, the interface of a method, and
-//! `integration_method`, which starts one; then `integration`, which is built on them: `front` makes a step and
-//! searches it for events, `run` goes from event to event, `step` gives single steps and their
-//! polynomials, `occur` applies events, `saltation` their effect on derivatives, `held_sides`
-//! records on which pieces of a field the motion is, `sides` decides how it continues at a surface
-//! between two; an `observer` is told of outputs, steps and events. `limits` bounds an integration,
-//! `pace` ends one that makes hardly any progress, `checks` validates its input; `trajectory` and
-//! `dense_output` hold motions. `fn_field` turns closures into vector fields, `breaks` ends steps
-//! where a field is not smooth, `since` counts the time of a field from the start.
+//! [`Statistics`](statistics::Statistics). First read `stepper`, the interface of a method, and
+//! `integration_method`, which starts a method; then `integration`, which is built on them: `front`
+//! makes a step and searches it for events, `run` goes from event to event, `step` gives single
+//! steps and their polynomials, `occur` applies events, `saltation` computes their effect on
+//! derivatives, `held_sides` records which pieces of a field the motion is on, `sides` decides how
+//! the motion continues at a surface between two pieces; an `observer` is told of outputs, steps
+//! and events. `limits` bounds an integration, `pace` ends an integration that makes hardly any
+//! progress, `checks` validates the input; `trajectory` and `dense_output` hold motions. `fn_field`
+//! turns closures into vector fields, `breaks` ends steps where a field is not smooth, `since`
+//! measures the time of a field from the start.
 
 pub(crate) mod breaks;
 pub(crate) mod checks;

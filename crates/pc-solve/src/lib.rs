@@ -1,4 +1,4 @@
-//! Integration of ẏ = f(t, y), for any [`VectorField`]: by SUNDIALS CVODES, DOP853 or Taylor's
+//! Integration of ẏ = f(t, y), for any [`VectorField`], with SUNDIALS CVODES, DOP853 or Taylor's
 //! method.
 //!
 //! The sections follow the order in which a program needs them: a motion in one call, its method,
@@ -26,7 +26,7 @@
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//! [`from_fn`] takes further closures:[a Jacobian](FnField::with_jacobian), [its
+//! [`from_fn`] takes further closures: [a Jacobian](FnField::with_jacobian), [its
 //! pattern](FnField::with_sparsity), [products with it](FnField::with_jvp), [a
 //! projection](FnField::with_projection) to invariants. Failures are values: a [`SolveFailure`]
 //! holds the outputs reached before the failure, and the [`SolveError`] that ended the motion.
@@ -36,7 +36,7 @@
 //! [`Options`] chooses a [`Method`]: the variable-order multistep formulas of CVODE [Cohen,
 //! Hindmarsh 1996], in SUNDIALS 7 [Hindmarsh et al. 2005; Gardner et al. 2022], which are
 //! [`Adams`](Method::Adams) and, for stiff systems, [`Bdf`](Method::Bdf); the explicit Runge–Kutta
-//! method [`Dop853`](Method::Dop853); [`Auto`](Method::Auto), which changes from DOP853 to BDF
+//! method [`Dop853`](Method::Dop853); [`Auto`](Method::Auto), which switches from DOP853 to BDF
 //! where it detects stiffness; and [`Taylor`](Method::Taylor), which needs a field that is a
 //! program. The error of a step is bounded by [`relative_tolerance`](Options::relative_tolerance) ·
 //! |y| + [`absolute_tolerance`](Options::absolute_tolerance).
@@ -44,9 +44,9 @@
 //! # Events
 //!
 //! [`Solve`] describes a motion to be integrated, with a method and [`Events`]: zeros of functions,
-//! which end the motion or [reset](FnEvents::with_reset) its state. Each is located to rounding
-//! error, even if several lie in one step or one reset causes another. Impacts that follow each
-//! other ever faster end the motion where they [accumulate](Accumulation).
+//! which end the motion or [reset](FnEvents::with_reset) its state. Each zero is located to
+//! rounding error, even if several lie in one step or one reset causes another. Impacts that follow
+//! one another ever faster end the motion where they [accumulate](Accumulation).
 //! ```
 //! use pc_solve::{Event, FnEvents, Solve, from_fn};
 //!
@@ -61,7 +61,7 @@
 //! # The motion as a function of time
 //!
 //! [`Solve::dense`] keeps the polynomials of all steps: [`DenseOutput`] evaluates y and ẏ at any
-//! time, as accurately as the steps.
+//! time, with the accuracy of the steps.
 //!
 //! # How accurate it is
 //!
@@ -70,7 +70,7 @@
 //!
 //! # Step by step
 //!
-//! [`Solve::start`] gives the [`Integration`] itself, which is at a certain time and state: it
+//! [`Solve::start`] gives the [`Integration`] itself, which is always at some time and state: it
 //! steps, advances to a time, can be [restarted](Integration::restart) from another state, and its
 //! field can be [changed](Integration::change) on the way, for example by a controller. An
 //! [`Observer`] sees outputs, steps and occurrences of a [run](Integration::run).
@@ -89,18 +89,18 @@
 //!
 //! # Checkpoints
 //!
-//! A [`Resumable`] motion gives a [`Checkpoint`] every n steps. A motion resumed from one
+//! A [`Resumable`] motion gives a [`Checkpoint`] every n steps. A motion resumed from a checkpoint
 //! equals the uninterrupted motion to the last bit; a checkpoint [converts to
 //! bytes](Checkpoint::to_bytes) that another process can read. A [`Deadline`] in the options ends a
 //! motion that takes too long.
 //!
 //! # Derivatives
 //!
-//! [`Solve::sensitivities`] integrates S = ∂y/∂(p, y₀) with the motion; S jumps where an event
-//! resets the state. For many parameters and a single quantity g of the motion,
+//! [`Solve::sensitivities`] integrates S = ∂y/∂(p, y₀) along with the motion; S jumps where an
+//! event resets the state. For many parameters and a single quantity g of the motion,
 //! [`adjoint_gradient`] integrates backwards instead; g is a [`Functional`]. [`Solve::integrals`]
-//! integrates quantities along the motion, and [`lyapunov_exponents`] measures the growth of its
-//! tangent vectors.
+//! integrates quantities along the motion, and [`lyapunov_exponents`] measures the growth of
+//! tangent vectors along it.
 //!
 //! # Many motions
 //!
@@ -127,13 +127,13 @@
 //! # Your own method
 //!
 //! A method implements [`Stepper`]: it makes a step and knows the states along it. Outputs, events,
-//! dense output and checkpoints are built on that. [`RungeKutta4`] is an example.
+//! dense output and checkpoints are built on these two abilities. [`RungeKutta4`] is an example.
 //!
 //! # Without C
 //!
 //! Without the default feature `cvode` the crate needs neither SUNDIALS nor a C compiler. It then
-//! has [`Integration`] by any [`Stepper`], such as [`Dop853`], [`Taylor`] and [`RungeKutta4`], with
-//! events, dense output and checkpoints.
+//! still provides [`Integration`] with any [`Stepper`], such as [`Dop853`], [`Taylor`] and
+//! [`RungeKutta4`], with events, dense output and checkpoints.
 //!
 //! # Related crates
 //!

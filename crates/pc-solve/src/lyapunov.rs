@@ -1,4 +1,5 @@
-//! Lyapunov exponents: `lyapunov` integrates tangent vectors, `orthonormal` orthonormalises them.
+//! Lyapunov exponents: `lyapunov` integrates tangent vectors, and `orthonormal` orthonormalises
+//! them.
 
 pub(crate) mod lyapunov;
 pub(crate) mod orthonormal;

@@ -1,11 +1,11 @@
-//! The classical Runge–Kutta method of order 4, with fixed steps.
+//! The classical Runge–Kutta method of order 4, with steps of fixed length.
 //!
 //! ```text
 //! k₁ = f(t, y), k₂ = f(t + h/2, y + h/2 k₁), k₃ = f(t + h/2, y + h/2 k₂), k₄ = f(t + h, y + h k₃)
 //! y(t + h) ≈ y + h/6 (k₁ + 2 k₂ + 2 k₃ + k₄)
 //! ```
 //! [Kutta, Z. Math. Phys. 46 (1901) 435]. States inside a step lie on the cubic Hermite
-//! interpolant, whose error is of order 4 like that of the steps.
+//! interpolant, whose error is of order 4, like that of the steps.
 
 use pc_expr::{Failure, VectorField};
 
@@ -17,13 +17,15 @@ use crate::integration::limits::Limits;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::{LastStep, Stepper};
 
-/// A step that would end less than this fraction of its length before a stop time or a break ends there.
+/// A step that would end just before a stop time or a break, by less than this fraction of its
+/// length, is made to end there.
 const NEAR: f64 = 1e-9;
-/// Relative and absolute tolerance of the state for events, since a fixed-step method has none.
+/// The relative and absolute tolerance of the state that events use, since a fixed-step method has
+/// none.
 const TOLERANCES: (f64, f64) = (1e-9, 1e-12);
 
-/// Integration by [`RungeKutta4`], without error control: for real-time loops, for comparisons, and
-/// where every step has to take the same computing time.
+/// Integration with [`RungeKutta4`], without error control: for real-time loops, for comparisons,
+/// and wherever every step has to take the same computing time.
 ///
 /// ```
 /// use pc_solve::{FixedStep, Solve, from_fn};
@@ -40,8 +42,8 @@ pub struct FixedStep {
 }
 
 impl FixedStep {
-    /// Integration with steps of this positive length; a step that ends at a stop time or a
-    /// [break](VectorField::breaks) may be shorter.
+    /// Integration with steps of this length, which is positive; a step that ends at a stop time or
+    /// a [break](VectorField::breaks) may be shorter.
     pub fn new(length: f64) -> FixedStep {
         FixedStep { length, limits: Limits::default() }
     }
@@ -84,7 +86,7 @@ pub struct RungeKutta4<F> {
     statistics: Statistics,
 }
 
-/// A state of the motion with its rates.
+/// A state of the motion, with its rates.
 #[derive(Debug, Clone)]
 struct Node {
     t: f64,
@@ -133,7 +135,7 @@ impl<F: VectorField> RungeKutta4<F> {
         evaluated.map_err(|failure| self.failed(Reason::Rates { t: self.end.t }, Some(failure)))
     }
 
-    /// The end of the next step towards a time.
+    /// The end of the next step towards a given time.
     fn target(&mut self, towards: f64) -> Result<f64, SolveError> {
         let from = self.end.t;
         let direction = 1.0_f64.copysign(towards - from);

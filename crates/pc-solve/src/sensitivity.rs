@@ -1,11 +1,11 @@
 //! Derivatives of a motion with respect to its start and to parameters, and gradients of
-//! functionals of it.
+//! functionals of the motion.
 //!
-//! CVODES integrates the derivatives, or an explicit method does so with the equations of variation
-//! as part of its state (`explicit`). `solve` returns them as a `trajectory` in one call,
-//! `forward_output` during an integration. `adjoint` integrates backwards for the gradient of a
-//! `functional`, with `adjoint_options`: `adjoint_pass` goes through the pieces of the motion, each
-//! a `motion_record`, and `adjoint_field` holds the equations, with the help of a `transpose`.
+//! Either CVODES integrates the derivatives, or an explicit method does, with the derivatives as
+//! part of its state (`explicit`). In one call, `solve` returns them as a `trajectory`; during an
+//! integration, `forward_output` gives them. `adjoint` integrates backwards to find the gradient of
+//! a `functional`, with `adjoint_options`: `adjoint_pass` goes through the pieces of the motion,
+//! each a `motion_record`, and `adjoint_field` holds the equations, with the help of a `transpose`.
 
 pub(crate) mod adjoint;
 pub(crate) mod adjoint_field;

@@ -1,5 +1,5 @@
-//! Settings, to which errors refer: `nonlinear_solver`, `tolerance` and `inequality`, and the
-//! `options` that contain them.
+//! Settings of an integration, to which errors refer: `nonlinear_solver`, `tolerance` and
+//! `inequality`, and the `options` that contain them.
 
 pub(crate) mod inequality;
 pub(crate) mod nonlinear_solver;

@@ -1,6 +1,6 @@
 //! Integration in one call.
 //!
-//! `solve` integrates by any method and returns a `solution` or a `failure`; `integrals` adds
+//! `solve` integrates with any method and returns a `solution` or a `failure`; `integrals` adds
 //! integrals along the motion.
 
 pub(crate) mod failure;

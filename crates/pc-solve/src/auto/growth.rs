@@ -3,27 +3,28 @@
 //! ```text
 //! ρ = ‖f(t, y + ε v) − f(t, y)‖ / ε, then v ← that direction; norms weighed by the tolerances, ‖v‖ = 1
 //! ```
-//! is a step of the power iteration, which continues from state to state: ∂f/∂y changes little from
-//! one step to the next.
+//! is a step of the power iteration, which is continued from state to state: ∂f/∂y changes little
+//! from one step to the next.
 
 /// The power iteration.
 #[derive(Debug, Clone)]
 pub(super) struct Growth {
-    /// The current state, and the tolerances there.
+    /// The current state, and the tolerances at that state.
     y: Vec<f64>,
     tolerances: Vec<f64>,
     direction: Vec<f64>,
     state: Vec<f64>,
     rates: [Vec<f64>; 2],
-    /// The latest estimates; the largest of them is used.
+    /// The latest estimates; the largest one is used.
     recent: [f64; RECENT],
     count: usize,
 }
 
-/// The number of estimates whose maximum is used: for a rotation the estimates rise and fall.
+/// The number of estimates whose maximum is used: the estimates rise and fall where ∂f/∂y rotates
+/// vectors.
 const RECENT: usize = 6;
-/// The size of ε relative to that of the state: the square root of the relative rounding error of
-/// f.
+/// The size of ε relative to the size of the state: the square root of the relative rounding error
+/// of f.
 const RELATIVE: f64 = 1.5e-8;
 
 impl Growth {
@@ -45,7 +46,7 @@ impl Growth {
         self.direction.fill(0.0);
     }
 
-    /// Moves to y with these tolerances.
+    /// Moves to the state y, with these tolerances.
     pub(super) fn stand(&mut self, y: &[f64], tolerance: impl Fn(usize, f64) -> f64) {
         self.y.copy_from_slice(y);
         for (i, of) in self.tolerances.iter_mut().enumerate() {
@@ -53,8 +54,8 @@ impl Growth {
         }
     }
 
-    /// Makes one step of the iteration, with f evaluated by `look`, and returns ρ, or none until
-    /// there are enough estimates or if f fails.
+    /// Makes one step of the iteration, with f evaluated by `look`, and returns ρ, or none if f
+    /// fails or there are not yet enough estimates.
     pub(super) fn estimate(&mut self, mut look: impl FnMut(&[f64], &mut [f64]) -> bool) -> Option<f64> {
         let Growth { y, tolerances, direction, state, rates: [here, there], recent, count } = self;
         let norm = |v: &[f64]| {

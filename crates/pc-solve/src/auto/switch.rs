@@ -15,37 +15,39 @@ use crate::integration::stepper::{LastStep, Stepper};
 use crate::settings::options::Options;
 
 /// A BDF step of length h counts as non-stiff if h ρ is below this. Such a step takes about two
-/// evaluations of f and linear solves; an explicit step takes twelve evaluations and is stable up
-/// to 6.1/ρ, so that the explicit method costs no more, even where stability limits its steps.
+/// evaluations of f and two linear solves; an explicit step takes twelve evaluations and is stable
+/// up to h = 6.1/ρ, so that the explicit method costs no more, even where stability limits its
+/// steps.
 const STIFF: f64 = 1.0;
-/// One in this many BDF steps is examined …
+/// One in this many BDF steps is examined, …
 const EVERY: u64 = 4;
-/// … and this many examined steps in succession must be non-stiff; the number doubles at each
-/// return.
+/// … and this many successive examined steps must be non-stiff; the number doubles at each return.
 const CLEAR: u32 = 8;
-/// Number of returns after which that number stops doubling.
+/// The number of returns after which that number stops doubling.
 const DOUBLINGS: u32 = 8;
 
 /// A method that uses [`Dop853`] where the motion is not stiff, and [`Cvode`] with BDF formulas
 /// where it is.
 ///
-/// It begins explicitly. Where [stiffness](Dop853::stiff_from) is detected, CVODE continues from
-/// the end of that step at order 1; once the length of the steps times an estimate of the largest
-/// eigenvalue of ∂f/∂y has been below 1 for many steps, it returns to the explicit method, which is
-/// stable up to 6.1. Each return doubles the number of steps needed for the next one, to prevent
-/// oscillation between the methods. The motion alone decides: the same input gives the same steps.
-/// A motion resumed from a checkpoint always begins explicitly.
+/// The integration begins with the explicit method. Where [stiffness](Dop853::stiff_from) is
+/// detected, CVODE continues from the end of that step at order 1; once the length of the steps
+/// times an estimate of the largest eigenvalue of ∂f/∂y has been below 1 for many steps, it returns
+/// to the explicit method, which is stable while this product is at most 6.1. Each return doubles
+/// the number of steps needed for the next one, to prevent oscillation between the methods. The
+/// motion alone decides: the same input gives the same steps. A motion resumed from a checkpoint
+/// always begins with the explicit method.
 pub struct Auto<F: VectorField> {
-    /// None only while one method replaces the other.
+    /// The current method; none only while one method replaces the other.
     engine: Option<Engine<F>>,
     /// The options of both methods; the method they name is [`Method::Bdf`].
     options: Options,
     growth: Growth,
-    /// BDF steps since the last change, and successive examined steps that were non-stiff.
+    /// The number of BDF steps since the last change, and of successive examined steps that were
+    /// non-stiff.
     steps: u64,
     clear: u32,
     returns: u32,
-    /// The work before the last change, and the evaluations of `growth` since.
+    /// The work before the last change, and the evaluations made by `growth` since then.
     earlier: Statistics,
     evaluations: u64,
 }
@@ -68,8 +70,8 @@ impl<F: VectorField> fmt::Debug for Auto<F> {
 }
 
 impl<F: VectorField> Auto<F> {
-    /// Starts at y(t0) = y0, one number per component; the method of the options is
-    /// ignored, and their choices for implicit equations apply to the BDF formulas.
+    /// Starts at y(t0) = y0, one number per component; the method chosen in the options is ignored,
+    /// and their choices for implicit equations apply to the BDF formulas.
     ///
     /// # Errors
     /// As for [`Cvode::new`] and [`Dop853::new`].
@@ -132,7 +134,7 @@ impl<F: VectorField> Auto<F> {
         all
     }
 
-    /// Changes to the other method if the last steps call for it.
+    /// Switches to the other method if the last steps call for the change.
     pub(super) fn consider(&mut self) -> Result<(), SolveError> {
         let changes = match self.engine() {
             Engine::Explicit(explicit) => explicit.stiff_from().is_some(),

@@ -1,8 +1,9 @@
 //! Checkpoints, from which a motion resumes with the same numbers to the last bit.
 //!
 //! A multistep method depends on its history. So a motion with checkpoints restarts at each of
-//! them, interrupted or not: everything after a checkpoint depends only on its contents. This
-//! changes the motion within its tolerance, and costs the steps in which the order grows again.
+//! them, whether it is interrupted or not: everything after a checkpoint depends only on its
+//! contents. This changes the motion within its tolerance, and costs the steps in which the order
+//! grows again.
 //! ```
 //! use pc_solve::{Checkpoint, Integration, Options, from_fn};
 //!
@@ -17,11 +18,11 @@
 //! assert_eq!(motion.state_at(4.0)?, later.state_at(4.0)?);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//! With events it also keeps their status: on which side of zero each function is, when each event
-//! last occurred, and which events are due. A quantity that a field conserves by projection, such
-//! as the energy, keeps the value given to the field when it was made, or, after a
-//! [restart](crate::Integration::restart), for example by a reset, its value at the state of the
-//! checkpoint.
+//! With events, a checkpoint also holds their status: on which side of zero each function is, when
+//! each event last occurred, and which events are due. A quantity that a field conserves by
+//! projection, such as the energy, keeps the value that the field was given at its creation or,
+//! after a [restart](crate::Integration::restart), for example by a reset, the value at the state
+//! of the checkpoint.
 
 use std::num::NonZeroU64;
 
@@ -29,9 +30,9 @@ use crate::events::events::{History, Occurrence};
 use crate::integration::statistics::Statistics;
 use crate::integration::trajectory::Trajectory;
 
-/// Time and state of a motion, the outputs and occurrences before it, and the work so far.
+/// The time and state of a motion, the outputs and occurrences up to then, and the work so far.
 ///
-/// The state is y, projected if the field has a projection: it includes the offset d of y = z + d,
+/// The state is y, projected if the field has a projection: it includes the offset d in y = z + d,
 /// which is zero again after the restart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Checkpoint {
@@ -40,10 +41,10 @@ pub struct Checkpoint {
     pub(crate) outputs: Trajectory,
     pub(crate) occurrences: Vec<Occurrence>,
     pub(crate) statistics: Statistics,
-    /// The number of steps since the last output, to which a limit applies.
+    /// The number of steps since the last output; a limit applies to this number.
     pub(crate) steps_since_output: u64,
-    /// Whether the motion has been restarted, for example by a reset: quantities that the field
-    /// conserves by projection then keep the values they have at this state.
+    /// Whether the motion has been restarted, for example by a reset: if so, quantities that the
+    /// field conserves by projection keep the values they have at this state.
     pub(crate) jumped: bool,
     /// S, column-major; empty without sensitivities.
     pub(crate) sensitivities: Vec<f64>,
@@ -59,19 +60,19 @@ pub(crate) struct Past {
     /// The status of each event.
     pub(crate) events: Vec<EventPast>,
     /// The events at the time of the checkpoint that are still to be applied, each with the
-    /// magnitude above which its function then differs from zero, and the side of zero that it
-    /// takes next.
+    /// magnitude above which its function then counts as different from zero, and the side of zero
+    /// that the function takes next.
     pub(crate) due: Vec<(usize, f64, f64)>,
 }
 
 /// The status of one event.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct EventPast {
-    /// The side of zero of its function: 1, −1, or 0 while it is at zero.
+    /// The side of zero on which the function of the event is: 1, −1, or 0 while it is at zero.
     pub(crate) side: f64,
     /// The magnitude that the function must exceed to have left zero.
     pub(crate) noise: f64,
-    /// Its last occurrences.
+    /// The last occurrences of the event.
     pub(crate) history: History,
 }
 
@@ -101,27 +102,29 @@ impl Checkpoint {
         self.time
     }
 
-    /// The state there.
+    /// The state at the checkpoint.
     pub fn state(&self) -> &[f64] {
         &self.state
     }
 
-    /// The sensitivities there, column-major; empty if there are none.
+    /// The sensitivities at the checkpoint, column-major; empty if there are none.
     pub fn sensitivities(&self) -> &[f64] {
         &self.sensitivities
     }
 
-    /// The outputs of [`solve_checkpointed`](crate::solve_checkpointed) up to that time.
+    /// The outputs of [`solve_checkpointed`](crate::solve_checkpointed) up to the time of the
+    /// checkpoint.
     pub fn outputs(&self) -> &Trajectory {
         &self.outputs
     }
 
-    /// The occurrences of [`solve_checkpointed`](crate::solve_checkpointed) up to that time.
+    /// The occurrences of events in [`solve_checkpointed`](crate::solve_checkpointed) up to the
+    /// time of the checkpoint.
     pub fn occurrences(&self) -> &[Occurrence] {
         &self.occurrences
     }
 
-    /// The work up to that time.
+    /// The work up to the time of the checkpoint.
     pub fn statistics(&self) -> &Statistics {
         &self.statistics
     }

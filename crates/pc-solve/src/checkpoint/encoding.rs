@@ -22,20 +22,20 @@ use crate::integration::trajectory::Trajectory;
 const MAGIC: &[u8] = b"pc checkpoint ";
 const VERSION: u64 = 6;
 
-/// Why bytes cannot be read as a checkpoint.
+/// Why the bytes cannot be read as a checkpoint.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckpointError {
-    /// The bytes are not those of a checkpoint.
+    /// The bytes are not a checkpoint.
     #[error("it is not a checkpoint")]
     Foreign,
-    /// A checkpoint of another version of the format.
+    /// The checkpoint is in another version of the format.
     #[error("it is a checkpoint of version {found} of the format, not {VERSION}")]
     Version {
         /// Its version.
         found: u64,
     },
-    /// A checkpoint with a part missing or changed.
+    /// The checkpoint has a missing or altered part.
     #[error("the checkpoint is damaged: a part of it is missing or changed")]
     Damaged,
 }
@@ -107,7 +107,8 @@ impl Checkpoint {
     /// The checkpoint in these bytes, and its label.
     ///
     /// # Errors
-    /// [`CheckpointError`] unless they are exactly what [`to_bytes`](Checkpoint::to_bytes) wrote.
+    /// [`CheckpointError`] unless the bytes are exactly what [`to_bytes`](Checkpoint::to_bytes)
+    /// wrote.
     pub fn from_bytes(bytes: &[u8]) -> Result<(Checkpoint, String), CheckpointError> {
         let rest = bytes.strip_prefix(MAGIC).ok_or(CheckpointError::Foreign)?;
         // Other versions may have another format from here on.

@@ -1,4 +1,4 @@
-//! A motion in legs from checkpoint to checkpoint.
+//! Integration of a motion in legs, from checkpoint to checkpoint.
 
 use std::cell::{Cell, RefCell};
 use std::num::NonZeroU64;
@@ -17,10 +17,10 @@ use crate::integration::stepper::Stepper;
 use crate::solve::failure::SolveFailure;
 use crate::solve::solution::Solution;
 
-/// A motion, and its sensitivities at the outputs, one matrix after the other.
+/// A motion, and its sensitivities at the outputs, one matrix after another.
 pub(crate) type Reached = (Solution, Vec<f64>);
 
-/// Integrates a motion in legs, with a method that has sensitivities or none.
+/// Integrates a motion in legs, with a method that may have sensitivities.
 pub(crate) fn follow<F: VectorField, E: Events>(
     method: &impl IntegrationMethod<F>,
     mut parts: impl FnMut() -> (F, E),
@@ -79,11 +79,11 @@ pub(crate) fn follow<F: VectorField, E: Events>(
     }
 }
 
-/// Gives a method that has begun at a checkpoint the sensitivities there; at the start of a motion
-/// the method keeps its own.
+/// Passes the sensitivities at a checkpoint to a method that has begun there; at the start of a
+/// motion the method keeps its own.
 ///
 /// # Errors
-/// [`InputError::Sensitivities`] if the method has another number of columns.
+/// [`InputError::Sensitivities`] if the method has a different number of columns.
 fn take_up<S: Stepper>(stepper: &mut S, stand: &Checkpoint) -> Result<(), SolveError> {
     let (expected, dim) = (stepper.column_parameters().len(), stand.state.len());
     if stand.past.is_none() && stand.sensitivities.is_empty() {
@@ -103,7 +103,7 @@ fn take_up<S: Stepper>(stepper: &mut S, stand: &Checkpoint) -> Result<(), SolveE
     stepper.restart(stand.time, &stand.state, &stand.sensitivities, None)
 }
 
-/// The motion up to a checkpoint, which ended in this way.
+/// The motion up to a checkpoint, given how it ended.
 fn motion(stand: Checkpoint, ending: Option<Ending>) -> Reached {
     let Checkpoint { outputs: mut trajectory, occurrences, statistics, output_sensitivities, .. } = stand;
     trajectory.finish(ending == Some(Ending::Completed), statistics);
@@ -113,9 +113,9 @@ fn motion(stand: Checkpoint, ending: Option<Ending>) -> Reached {
 /// The settings that all legs share.
 struct Plan<'a> {
     times: &'a [f64],
-    /// The number of steps of a leg.
+    /// The number of steps in a leg.
     every: u64,
-    /// Maximum number of steps from one output to the next.
+    /// The maximum number of steps from one output to the next.
     limit: u64,
 }
 
@@ -131,7 +131,7 @@ impl Plan<'_> {
     /// Integrates one leg, and adds its outputs and occurrences to `stand`, the checkpoint at which
     /// it began; returns how the motion ends, if it ends in this leg.
     ///
-    /// A leg has `every` steps, or more if these have not advanced the time.
+    /// A leg has `every` steps, or more if that many have not advanced the time.
     fn leg<S: Stepper, E: Events>(
         &self,
         integration: &mut Integration<S, E>,

@@ -14,11 +14,12 @@ use crate::solve::solution::Solution;
 
 /// A motion with checkpoints, to be integrated from one of them, or from its [start](Checkpoint::start).
 ///
-/// It restarts at each checkpoint with the vector field and the events that `parts` makes; in the legs
-/// after a reset, a field that conserves an integral [keeps](VectorField::restart) its value at the
-/// checkpoint. The part of a step before an event counts as a step; a checkpoint at its end follows
-/// all events there. So a motion resumed from any of its checkpoints gives the same outputs, the
-/// same occurrences and the same ending, bit for bit, as one that was never interrupted.
+/// It restarts at each checkpoint with the vector field and the events made by `parts`; in the legs
+/// after a reset, a field that conserves an integral [keeps](VectorField::restart) the value of the
+/// integral at the checkpoint. The part of a step before an event counts as a step; a checkpoint at
+/// the end of this part follows all events there. So a motion resumed from any of its checkpoints
+/// gives the same outputs, the same occurrences and the same ending, bit for bit, as a motion that
+/// was never interrupted.
 ///
 /// ```
 /// use std::{num::NonZeroU64, ops::ControlFlow};
@@ -59,7 +60,7 @@ impl<P> Resumable<P> {
 }
 
 impl<P, M> Resumable<P, M> {
-    /// Sets the method: [`Options`] choose one of those built in.
+    /// Sets the method; [`Options`] choose one of the built-in methods.
     pub fn method<N>(self, method: N) -> Resumable<P, N> {
         let Resumable { parts, from, every, .. } = self;
         Resumable { parts, from, method, every }
@@ -70,11 +71,13 @@ impl<P, M> Resumable<P, M> {
         Resumable { every, ..self }
     }
 
-    /// The states at `times`, the first of which are the outputs of the checkpoint, and the occurrences of events.
+    /// Returns the states at `times`, which begin with the output times of the checkpoint, and the
+    /// occurrences of events.
     ///
     /// Each checkpoint, including the first, is passed to `save`, and the last one again with
-    /// `true` if the motion fails or is stopped by `step`, which sees the end of each step. The
-    /// outputs beyond that checkpoint are returned, but the motion resumes from the checkpoint.
+    /// `true` if the motion fails or is stopped by `step`, which is called with the end of each
+    /// step. The outputs beyond that checkpoint are returned, but the motion resumes from the
+    /// checkpoint.
     ///
     /// # Errors
     /// As for [`Solve::run`](crate::Solve::run), and [`InputError::EventCount`](crate::InputError::EventCount);

@@ -59,7 +59,7 @@ impl<S: Stepper> Integration<S> {
     ///
     /// # Errors
     /// As for [`with_events`](Integration::with_events); [`InputError::EventCount`] if the
-    /// checkpoint belongs to a motion with another number of events.
+    /// checkpoint belongs to a motion with a different number of events.
     pub fn with_events_of<E: Events>(
         self,
         events: E,

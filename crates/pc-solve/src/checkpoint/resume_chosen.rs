@@ -1,4 +1,4 @@
-//! Resumption of an integration with the method that options choose.
+//! Resumption of an integration with the method chosen in the options.
 
 use pc_expr::VectorField;
 
@@ -14,9 +14,9 @@ impl<F: VectorField> Integration<Chosen<F>> {
     /// Begins at a checkpoint, which may be the start of a motion, with the method of the options
     /// and without its events: [`with_events_of`](Integration::with_events_of) adds them.
     ///
-    /// With sensitivities the method is one of CVODES, Adams for
-    /// [`Method::Auto`](crate::Method::Auto); the columns are those of the checkpoint, or at the
-    /// start of a motion those of `sensitivities`.
+    /// With sensitivities the method is one of those of CVODES, namely Adams for
+    /// [`Method::Auto`](crate::Method::Auto); the columns are those of the checkpoint or, at the
+    /// start of a motion, those of `sensitivities`.
     ///
     /// # Errors
     /// As for [`Chosen::new`], and

@@ -15,7 +15,7 @@ impl<F: VectorField> Cvode<F> {
     ///
     /// # Errors
     /// As for [`with_sensitivities`](Cvode::with_sensitivities); [`InputError::Sensitivities`] if
-    /// the checkpoint has another number of columns.
+    /// the checkpoint has a different number of columns.
     pub(crate) fn begin_at(
         field: F,
         checkpoint: &Checkpoint,
@@ -41,7 +41,7 @@ impl<F: VectorField> Integration<Cvode<F>> {
     ///
     /// The resumed motion equals the uninterrupted one to the last bit if `field`, events and
     /// `options` are the same; fields and events that remember earlier evaluations must be in the
-    /// state in which they were made.
+    /// state in which they were created.
     ///
     /// # Errors
     /// As for [`new`](Integration::new); [`InputError::Sensitivities`] if the checkpoint has
@@ -51,11 +51,11 @@ impl<F: VectorField> Integration<Cvode<F>> {
     }
 
     /// Restarts at a checkpoint as [`resume`](Integration::resume) does, with its sensitivities.
-    /// Their columns are specified by `sensitivities`, whose starts are ignored.
+    /// The columns are specified by `sensitivities`, whose initial values are ignored.
     ///
     /// # Errors
     /// As for [`resume`](Integration::resume); [`InputError::Sensitivities`] if the checkpoint has
-    /// another number of columns.
+    /// a different number of columns.
     pub fn resume_with_sensitivities(
         field: F,
         checkpoint: &Checkpoint,

@@ -8,8 +8,8 @@ use crate::error::SolveError;
 use crate::integration::breaks::next_break;
 
 impl<F: VectorField> Cvode<F> {
-    /// The break of the field, or the stop time, that the next step towards a time must not pass;
-    /// none if the field has no breaks. Reinitialises CVODES where the field has jumped.
+    /// The break of the field, or the stop time, that the next step towards a given time must not
+    /// pass; none if the field has no breaks. Reinitialises CVODES where the field has jumped.
     pub(super) fn stop_before_break(&mut self, towards: f64) -> Result<Option<f64>, SolveError> {
         if self.field().breaks().is_empty() {
             return Ok(None);

@@ -25,7 +25,7 @@ pub(crate) struct Callbacks<F> {
     pub(crate) field: F,
     pub(crate) dim: usize,
     pub(crate) linear: Work,
-    /// Converts vectors of CVODES to states, if the field has a projection.
+    /// Converts the vectors of CVODES to states, if the field has a projection.
     offset: Option<Offset>,
     /// The last failure, until it is taken.
     failure: Option<Failure>,
@@ -55,7 +55,7 @@ impl<F: VectorField> Callbacks<F> {
         })
     }
 
-    /// Calls `evaluate`, keeps its failure or panic for the caller of CVODES, and returns the code
+    /// Calls `evaluate`, stores its failure or panic for the caller of CVODES, and returns the code
     /// that CVODES expects.
     pub(crate) fn guard(
         &mut self,
@@ -81,7 +81,7 @@ impl<F: VectorField> Callbacks<F> {
     }
 }
 
-/// An owned [`Callbacks`] at an address that CVODES may keep.
+/// An owned [`Callbacks`] at a fixed address, which CVODES may keep.
 pub(crate) struct UserData<F>(NonNull<Callbacks<F>>);
 
 impl<F> UserData<F> {
@@ -150,15 +150,15 @@ impl<F> UserData<F> {
         unsafe { Box::from_raw(callbacks.as_ptr()) }.field
     }
 
-    /// The vector field and the offset of its states, if it has a projection.
+    /// The vector field, and the offset of its states if the field has a projection.
     pub(crate) fn projection(&mut self) -> Option<(&mut F, &mut Offset)> {
         // SAFETY: owned and live, borrowed exclusively.
         let callbacks = unsafe { self.0.as_mut() };
         callbacks.offset.as_mut().map(|offset| (&mut callbacks.field, offset))
     }
 
-    /// Evaluates f at a vector of CVODES, outside calls of CVODES; returns whether it succeeded. A
-    /// panic resumes.
+    /// Evaluates f at a vector of CVODES, outside calls of CVODES; returns whether the evaluation
+    /// succeeded. A panic resumes.
     pub(crate) fn look(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> bool
     where
         F: VectorField,
@@ -238,7 +238,7 @@ pub(crate) unsafe extern "C" fn rhs<F: VectorField>(
 /// unwritten.
 ///
 /// # Safety
-/// `data` has room for `len` numbers, which nobody else uses during `'a`; they need not be
+/// `data` has room for `len` numbers, which nothing else uses during `'a`; the numbers need not be
 /// initialised.
 pub(crate) unsafe fn nan_slice<'a>(data: *mut f64, len: usize) -> &'a mut [f64] {
     for i in 0..len {

@@ -12,7 +12,7 @@ use crate::error::SolveError;
 /// Every other handle of a solver refers to its context and must be dropped before it.
 pub(crate) struct Context {
     raw: sys::SUNContext,
-    /// Box shared with [`keep_message`], so held as a pointer.
+    /// A box shared with [`keep_message`], and therefore held as a pointer.
     messages: NonNull<Vec<String>>,
 }
 
@@ -57,12 +57,12 @@ impl Context {
         joined
     }
 
-    /// An error for the set-up `function` unless its return `code` is 0.
+    /// Returns an error for the set-up `function` unless its return `code` is 0.
     pub(crate) fn check(&mut self, function: &'static str, code: c_int) -> Result<(), SolveError> {
         if code == 0 { Ok(()) } else { Err(self.setup_error(function, code)) }
     }
 
-    /// `pointer`, or an error for the constructor `function` if it is null.
+    /// Returns `pointer`, or an error for the constructor `function` if the pointer is null.
     pub(crate) fn check_new<T>(
         &mut self,
         function: &'static str,

@@ -1,4 +1,4 @@
-//! The method of CVODES.
+//! The methods of CVODES.
 
 use std::ffi::{c_int, c_void};
 use std::fmt;
@@ -19,8 +19,8 @@ use crate::integration::statistics::Statistics;
 /// The variable-order, variable-step multistep methods of CVODES as a [`Stepper`](crate::Stepper)
 /// that owns the vector field.
 ///
-/// [`Integration`](crate::Integration) integrates with it; [`solve`](crate::solve()) does so in one
-/// call.
+/// [`Integration`](crate::Integration) integrates with this stepper; [`solve`](crate::solve()) does
+/// so in one call.
 pub struct Cvode<F> {
     // Dropped in this order: what CVODES refers to after CVODES, the context last.
     pub(crate) memory: Memory,
@@ -39,12 +39,13 @@ pub struct Cvode<F> {
     pub(crate) time: f64,
     /// The end of the last step of CVODES.
     pub(crate) step_time: f64,
-    /// 1 or −1 since the first step.
+    /// The direction of time, 1 or −1, once the first step has been made.
     pub(crate) direction: Option<f64>,
     pub(super) initial_step: Option<f64>,
     pub(super) stop_time: Option<f64>,
     pub(super) limits: Limits,
-    /// Successive steps that did not advance the time, and the last failure overcome in them.
+    /// The number of successive steps that did not advance the time, and the last failure overcome
+    /// in these steps.
     pub(super) idle_steps: u32,
     pub(super) idle_failure: Option<Failure>,
     /// The work before the last restart, and whether no step has been made since then.
@@ -88,8 +89,8 @@ impl<F: VectorField> Cvode<F> {
         self.earlier.followed_by(&since)
     }
 
-    /// The linear solver of Newton's iteration, either the chosen one or the default for the field;
-    /// none for the fixed-point iteration.
+    /// The linear solver for Newton's iteration, either the chosen one or the default for the
+    /// field; none for the fixed-point iteration.
     pub fn linear_solver(&self) -> Option<&LinearSolver> {
         self.linear.as_ref().map(Linear::choice)
     }
@@ -192,7 +193,7 @@ impl<F: VectorField> Cvode<F> {
 
     /// Fails if many successive steps have not advanced the time; the last one began at `before`.
     ///
-    /// `failure` occurred in the last step and was overcome by shortening it.
+    /// `failure` occurred in the last step and was overcome by shortening the step.
     fn check_progress(&mut self, before: f64, failure: Option<Failure>) -> Result<(), SolveError> {
         if self.step_time != before {
             self.idle_steps = 0;
@@ -210,7 +211,7 @@ impl<F: VectorField> Cvode<F> {
     }
 
     /// Projects the work vector, which CVODES has written for time `t`, at the end of a step or
-    /// within it.
+    /// inside it.
     pub(super) fn project(&mut self, t: f64, step: bool) -> Result<(), SolveError> {
         let Some((field, offset)) = self.callbacks.projection() else { return Ok(()) };
         match offset.project(field, t, self.work.as_mut_slice(), step) {

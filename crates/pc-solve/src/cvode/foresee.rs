@@ -6,8 +6,9 @@
 //! ```text
 //! δ = p′(t) − f(t, p(t))
 //! ```
-//! would change the state by about h δ over a step of length h. If that is large compared with the
-//! tolerance, the step ends there at the latest, so that the method meets the feature.
+//! would change the state by about h δ over a step of length h. If this change is large compared
+//! with the tolerance, the step ends at that time at the latest, so that the method meets the
+//! feature.
 
 use pc_expr::{PolynomialMotion, VectorField};
 use sundials_sys as sys;
@@ -19,12 +20,12 @@ use crate::foresight::SURPRISE;
 use crate::foresight::places::{Ahead, Here, Places};
 use crate::foresight::scatter::scatters;
 
-/// Maximum length of the first step as a fraction of the whole interval, as CVODE estimates it.
+/// The maximum length of the first step as a fraction of the whole interval, as CVODE estimates it.
 const FIRST_STEP: f64 = 0.1;
 
 impl<F: VectorField> Cvode<F> {
-    /// The time at which the next step towards `towards` has to end, so as not to miss a feature of
-    /// the field; none if it would miss nothing.
+    /// The time at which the next step towards `towards` has to end so as not to miss a feature of
+    /// the field; none if the step would miss nothing.
     pub(super) fn foresee(&mut self, towards: f64) -> Result<Option<f64>, SolveError> {
         let Some(mut places) = self.foresight.places.take_if(|places| !places.are_absent()) else {
             return Ok(None);
@@ -83,7 +84,7 @@ impl<F: VectorField> Cvode<F> {
         }
     }
 
-    /// Reads the polynomial of the last step, or the tangent before the first step.
+    /// Reads the polynomial of the last step or, before the first step, the tangent.
     fn read_polynomial(&mut self) -> Result<(), SolveError> {
         let t = self.step_time;
         let Foresight { polynomial, state, rates, evaluations, .. } = &mut self.foresight;

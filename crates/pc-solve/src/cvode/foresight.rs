@@ -10,13 +10,13 @@ use crate::settings::tolerance::Tolerance;
 /// step length grows.
 const NEXT_TERM: f64 = 20.0;
 
-/// The times to examine, and the prediction there.
+/// The times to examine, and the prediction of the motion at them.
 pub(super) struct Foresight {
-    /// None while it is in use.
+    /// The times to examine; none while they are in use elsewhere.
     pub(super) places: Option<Places>,
     pub(super) relative_tolerance: f64,
     pub(super) absolute_tolerance: Tolerance,
-    /// Evaluations since the last restart.
+    /// The number of evaluations since the last restart.
     pub(super) evaluations: u64,
     /// z⁽ᵏ⁾(tₙ)/k! of the last polynomial, for k = 0, 1, …, each as long as the state; and work space.
     pub(super) polynomial: Vec<f64>,
@@ -75,11 +75,11 @@ impl Foresight {
         atol / self.relative_tolerance
     }
 
-    /// max |δᵢ|/(rtol |yᵢ| + atolᵢ) for the defect at the last time examined, `since` after the
-    /// last step.
+    /// max |δᵢ|/(rtol |yᵢ| + atolᵢ) for the defect at the last time examined, which lies `since`
+    /// after the last step.
     ///
-    /// The part that the next term of the polynomial would explain is subtracted: a method that has
-    /// just raised its order includes that term, and makes long steps with it.
+    /// The part of the defect that the next term of the polynomial would explain is subtracted: a
+    /// method that has just raised its order includes that term, and makes long steps with it.
     pub(super) fn defect(&self, since: f64) -> f64 {
         let ratio = (since / self.last_step).abs();
         let growth = NEXT_TERM * f64::from(self.order + 1) * ratio.powi(self.order) / self.last_step.abs();

@@ -1,9 +1,9 @@
 //! Sensitivities that are integrated along with the motion.
 //!
-//! `sensitivities` specifies the derivatives; `variation` holds their equations, with ∂f/∂y from
-//! whatever the field offers (`linearisation`); CVODES calls them through `equations`. `columns`
-//! are the data of an integration with sensitivities, `forward` integrates them, `interpolation`
-//! gives them inside a step.
+//! `sensitivities` specifies the derivatives; `variation` holds their equations, with ∂f/∂y
+//! obtained from whatever the field offers (`linearisation`); CVODES evaluates these equations
+//! through `equations`. `columns` holds the data of an integration with sensitivities, `forward`
+//! integrates the columns, and `interpolation` gives them inside a step.
 
 pub(crate) mod columns;
 pub(crate) mod equations;

@@ -32,12 +32,12 @@ impl Vector {
         Ok(vector)
     }
 
-    /// Makes an instance of CVODES that starts from this vector repeat a step that violates an
+    /// Makes an instance of CVODES that starts from this vector repeat any step that violates an
     /// inequality, with at most half its length.
     ///
-    /// CVODES takes 0.9 times a quotient of vectors, which it uses for nothing else, as the factor
-    /// of the length. It forms the quotient with the prediction instead of the last state, so that
-    /// it is infinite where the prediction is exact.
+    /// As the factor for the length, CVODES takes 0.9 times the smallest quotient of two vectors,
+    /// which it uses for nothing else. It forms the quotient with the prediction instead of the
+    /// last state, so that it is infinite where the prediction is exact.
     pub(crate) fn halve_after_violations(&mut self) {
         // SAFETY: the vector is live and ours alone, and so is its table of operations, which
         // clones copy.
@@ -60,7 +60,7 @@ impl Vector {
     }
 }
 
-/// The address of the numbers of a vector. `N_VGetArrayPointer` calls through a table, whose cost
+/// The address of the numbers in a vector. `N_VGetArrayPointer` calls through a table, whose cost
 /// is noticeable for small systems.
 ///
 /// # Safety
@@ -71,7 +71,7 @@ pub(crate) unsafe fn numbers_of(vector: sys::N_Vector) -> *mut f64 {
     unsafe { (*(*vector).content.cast::<sys::_N_VectorContent_Serial>()).data }
 }
 
-/// The smallest quotient of corresponding components, but at most 0.5/0.9.
+/// The smallest quotient of corresponding components, or 0.5/0.9 if that is smaller.
 unsafe extern "C" fn bounded_quotient(numerator: sys::N_Vector, denominator: sys::N_Vector) -> f64 {
     // SAFETY: both are live serial vectors of the same length.
     unsafe { sys::N_VMinQuotient_Serial(numerator, denominator) }.min(0.5 / 0.9)
@@ -101,14 +101,14 @@ impl NonlinearIteration {
         context.check_new("SUNNonlinSol_FixedPoint", raw).map(NonlinearIteration)
     }
 
-    /// Newton's iteration for `count` vectors at a time.
+    /// Newton's iteration, for `count` vectors at a time.
     pub(crate) fn newton_of(context: &mut Context, count: c_int, y: &Vector) -> Result<Self, SolveError> {
         // SAFETY: both are live and of one context; `y` is only a template to clone.
         let raw = unsafe { sys::SUNNonlinSol_NewtonSens(count, y.raw(), context.raw()) };
         context.check_new("SUNNonlinSol_NewtonSens", raw).map(NonlinearIteration)
     }
 
-    /// The fixed-point iteration for `count` vectors at a time.
+    /// The fixed-point iteration, for `count` vectors at a time.
     pub(crate) fn fixed_point_of(
         context: &mut Context,
         count: c_int,

@@ -15,9 +15,9 @@ pub(crate) type Integrands = Box<dyn FnMut(f64, &[f64], &mut [f64]) -> Result<()
 /// Integrals ∫ g(t, y) dt along a motion, for any number of functions g that do not affect it: the
 /// work of a force, the length of a path, a mean value.
 ///
-/// The method integrates them like further components of the state, outside its implicit equations.
-/// Steps also have to pass the error test of the integrals, unless that test is [switched
-/// off](Integrals::error_control).
+/// The method integrates these integrals like further components of the state, but outside its
+/// implicit equations. Steps also have to pass the error test of the integrals unless that test is
+/// [switched off](Integrals::error_control).
 ///
 /// ```
 /// use pc_solve::{Integration, Integrals, Options, from_fn};
@@ -71,8 +71,8 @@ impl Integrals {
         Integrals { error_control, ..self }
     }
 
-    /// Sets the relative and absolute tolerance of the integrals, positive; by default those of the
-    /// state, with its smallest absolute tolerance.
+    /// Sets the relative and absolute tolerance of the integrals, both positive; by default, they
+    /// are the relative tolerance of the state and the smallest of its absolute tolerances.
     pub fn tolerances(self, relative: f64, absolute: f64) -> Integrals {
         Integrals { tolerances: Some((relative, absolute)), ..self }
     }

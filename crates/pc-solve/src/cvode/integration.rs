@@ -1,4 +1,4 @@
-//! Integration with CVODES: constructors, and the functions that only this method has.
+//! Integration with CVODES: constructors, and the functions that only this method provides.
 
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -24,7 +24,7 @@ impl<F: VectorField> Integration<Cvode<F>> {
     }
 }
 
-/// Data of the error control and the linear solver.
+/// The data of the error control and of the linear solver.
 impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
     /// The same as [`Cvode::linear_solver`].
     pub fn linear_solver(&self) -> Option<&LinearSolver> {
@@ -67,7 +67,7 @@ impl<F: VectorField> Integration<Cvode<F>> {
         Ok(Integration::of(Cvode::with_integrals(field, t0, y0, options, integrals)?))
     }
 
-    /// Adds integrals along the motion to this integration, which has not begun.
+    /// Adds integrals along the motion to this integration, which has not yet begun.
     ///
     /// # Errors
     /// As for [`Cvode::and_integrals`].
@@ -81,8 +81,8 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
     /// their integrands.
     ///
     /// # Errors
-    /// [`InputError::NoIntegrals`](crate::InputError::NoIntegrals) unless they were requested;
-    /// [`SolveError::Integration`] if one has grown beyond the largest number.
+    /// [`InputError::NoIntegrals`](crate::InputError::NoIntegrals) unless integrals were requested;
+    /// [`SolveError::Integration`] if one of them has grown beyond the largest number.
     pub fn integrals(&mut self) -> Result<Vec<f64>, SolveError> {
         self.engine.integrals_here()
     }

@@ -26,7 +26,7 @@ impl<F: VectorField> Cvode<F> {
         LastStep { start: end - length, end, degree: u32::try_from(degree).ok() }
     }
 
-    /// Writes the derivative of y of that order at `t` in the last step to the work vector.
+    /// Writes the derivative of y of the given order at `t`, in the last step, to the work vector.
     pub(crate) fn interpolate_to_work(&mut self, t: f64, order: u32) -> Result<(), SolveError> {
         let order = i32::try_from(order).unwrap_or(i32::MAX);
         // SAFETY: memory and vector are live and of one context; a step has been taken.

@@ -7,10 +7,10 @@ use pc_expr::{Failure, VectorField};
 /// the error of a step [Shampine, Comp. Maths. Appls. 12B (1986) 1287].
 ///
 /// The hook of CVODES, `CVodeSetProjFn`, works for BDF only. On a top with a unit quaternion and on
-/// pendulums in Cartesian coordinates, at four tolerances, it took the same number of steps to
-/// within 3 % (in one case 10 % more), with similar errors and drift; its projection of the error
-/// estimate cost a second projection per step and saved no steps. So one method serves both
-/// families.
+/// pendulums in Cartesian coordinates, at four tolerances, the hook took the same number of steps
+/// as the method here to within 3 % (in one case 10 % more), with similar errors and drift; the
+/// hook's projection of the error estimate costs a second projection per step and saves no steps.
+/// So one method of projection serves both Adams and BDF.
 pub(crate) struct Offset {
     d: Vec<f64>,
     /// z + d

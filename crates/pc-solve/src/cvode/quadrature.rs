@@ -6,7 +6,7 @@ use crate::cvode::handles::Vector;
 
 /// A vector field with integrals q̇ = r(t, y) that do not affect it.
 pub(crate) trait Quadratures {
-    /// Number of integrals, at least 1.
+    /// The number of integrals, at least 1.
     fn count(&self) -> usize;
 
     /// Writes r(t, y), which must be finite.
@@ -15,8 +15,8 @@ pub(crate) trait Quadratures {
 
 /// The data of the integrals of an integration.
 pub(crate) struct Quadrature {
-    /// Room for their values, written by CVODES.
+    /// Room for the values of the integrals, written by CVODES.
     pub(super) values: Vector,
-    /// Their values at the last start.
+    /// The values of the integrals at the last start or restart.
     pub(super) start: Vec<f64>,
 }

@@ -33,7 +33,7 @@ impl<F: VectorField> Cvode<F> {
         Cvode::new(field, t0, y0, options)?.and_integrals(integrals, options)
     }
 
-    /// Adds integrals along the motion to this integration, which has not begun.
+    /// Adds integrals along the motion to this integration, which has not yet begun.
     ///
     /// # Errors
     /// [`SolveError::Input`] if the request is invalid; [`InputError::NoIntegrals`] if the
@@ -138,7 +138,7 @@ impl<F: VectorField> Cvode<F> {
 ///
 /// # Safety
 /// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData), a
-/// vector of its dimension and one with an entry per integral.
+/// vector of its dimension and a vector with one entry for each integral.
 unsafe extern "C" fn integrands<F: VectorField + Quadratures>(
     t: f64,
     y: sys::N_Vector,

@@ -1,4 +1,4 @@
-//! Restarts with the same options.
+//! Restarts of a method, with the same options.
 
 use pc_expr::VectorField;
 use sundials_sys as sys;

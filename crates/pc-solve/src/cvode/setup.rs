@@ -23,7 +23,7 @@ use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
 impl<F: VectorField> Cvode<F> {
-    /// Starts at y(t0) = y0, one number per component.
+    /// Starts at y(t0) = y0, which has one number per component.
     ///
     /// # Errors
     /// [`SolveError::Input`] unless all inputs are finite, of matching lengths and in their ranges;
@@ -105,7 +105,7 @@ struct Parts {
 }
 
 impl Parts {
-    /// Makes the objects, which call back to `callbacks`, which must outlive them.
+    /// Makes the objects, which call `callbacks`; `callbacks` must outlive them.
     fn new<F: VectorField>(
         callbacks: &mut UserData<F>,
         t0: f64,

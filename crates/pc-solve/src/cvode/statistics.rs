@@ -9,8 +9,8 @@ use crate::cvode::linear::work::Work;
 use crate::integration::statistics::Statistics;
 
 impl Statistics {
-    /// Reads the counters; those of the linear solver only if there is one, whose data are
-    /// `linear`.
+    /// Reads the counters, including those of the linear solver if there is one; `linear` holds its
+    /// data.
     pub(crate) fn read(memory: &Memory, linear: Option<&Work>) -> Self {
         let counter = |get: unsafe extern "C" fn(*mut c_void, *mut c_long) -> c_int| {
             let mut value = 0;

@@ -1,8 +1,8 @@
 //! Sums of stages over the components of a state.
 //!
 //! Rows are as long as a state, padded with 0 to an even length. For short rows the length is a
-//! compile-time constant: the loops unroll without bounds checks. The order of operations, and so
-//! each bit of the results, does not depend on this.
+//! compile-time constant, so that the loops are unrolled without bounds checks. The order of
+//! operations, and so each bit of the results, does not depend on whether the length is constant.
 
 use super::coefficients::{B, B3, E5};
 
@@ -22,7 +22,7 @@ pub(super) fn add<const TERMS: usize>(
     add_of::<0, TERMS>(sum, y, h, a, k);
 }
 
-/// The same for rows of length LENGTH, or any length if that is 0.
+/// The same for rows of length LENGTH, or of any length if LENGTH is 0.
 #[inline(always)]
 pub(super) fn add_of<const LENGTH: usize, const TERMS: usize>(
     sum: &mut [f64],
@@ -43,7 +43,7 @@ pub(super) fn add_of<const LENGTH: usize, const TERMS: usize>(
     }
 }
 
-/// Tolerances that weight the error of a step.
+/// The tolerances that weight the error of a step.
 #[derive(Clone, Copy)]
 pub(super) struct Weights<'a> {
     pub(super) relative: f64,
@@ -53,7 +53,8 @@ pub(super) struct Weights<'a> {
 
 /// Writes y₁ = y + h Σ bᵢ kᵢ from stages 1 and 6 to 12, and returns the sums over the components of
 /// the squares of the two error estimates over h, of orders 5 and 3, weighted by the tolerances.
-/// They are not finite where y₁ is not. Rows have length LENGTH, or any length if that is 0.
+/// The sums are not finite where y₁ is not finite. Rows have length LENGTH, or any length if LENGTH
+/// is 0.
 #[inline(always)]
 pub(super) fn finish_of<const LENGTH: usize>(
     y1: &mut [f64],

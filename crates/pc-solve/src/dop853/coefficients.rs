@@ -1,12 +1,12 @@
 //! The coefficients of the method, rounded to double precision.
 //!
 //! These are the nodes cᵢ, the matrix aᵢⱼ without its zeros, the weights bᵢ and those of the two
-//! error estimates, and, for dense output, three more stages and the weights dⱼᵢ of its last four
-//! terms. Stages are numbered from 1, as in the source; stage 13 is the rate at the end of the
-//! step. [Hairer, Nørsett, Wanner 1993], II.5 and II.6; the digits are those of their program
-//! `dop853.f`.
+//! error estimates, and, for dense output, the coefficients of three more stages and the weights
+//! dⱼᵢ of its last four terms. Stages are numbered from 1, as in the source; stage 13 is the rate
+//! at the end of the step. [Hairer, Nørsett, Wanner 1993], II.5 and II.6; the digits are those of
+//! their program `dop853.f`.
 
-/// c₁ … c₁₂; the last node is the end of the step.
+/// The nodes c₁ … c₁₂; the last node is the end of the step.
 pub(super) const C: [f64; 12] = [
     0.0,
     0.05260015195876773,
@@ -107,7 +107,7 @@ pub(super) const E5: [f64; 8] = [
 ];
 /// The weights b̂ of order 3, for stages 1, 9, 12; the other error estimate has the weights b − b̂.
 pub(super) const B3: [f64; 3] = [0.2440944881889764, 0.7338466882816118, 0.022058823529411766];
-/// c₁₄, c₁₅, c₁₆, of the stages of dense output.
+/// The nodes c₁₄, c₁₅, c₁₆ of the stages of dense output.
 pub(super) const DENSE_C: [f64; 3] = [0.1, 0.2, 0.7777777777777778];
 /// a₁₄ⱼ of the stages j = 1, 7, 8, 9, 10, 11, 12, 13.
 pub(super) const A14: [f64; 8] = [

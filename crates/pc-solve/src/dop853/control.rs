@@ -1,19 +1,19 @@
 //! Step length control.
 //!
 //! The next length is 0.85 h err^(−1/8), between h/3 and 6 h. The source has the factor 0.9, and
-//! optionally a power β of the previous error. Both affect how many steps are rejected, each of
-//! which costs eleven evaluations. For global errors of 1e-8 and 1e-10, 0.85 takes 5 to 15 % fewer
-//! evaluations than 0.9 for tops, pendulums and orbits; β = 0.02 saves nothing and β = 0.04 costs 5
-//! % for orbits with either factor, so β is left out.
+//! optionally a power β of the previous error. Both affect how many steps are rejected; each
+//! rejected step costs eleven evaluations. For global errors of 1e-8 and 1e-10, 0.85 takes 5 to 15
+//! % fewer evaluations than 0.9 for tops, pendulums and orbits; β = 0.02 saves nothing and β = 0.04
+//! costs 5 % for orbits with either factor, so β is left out.
 
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
-/// Safety factor of the length predicted from the error.
+/// The safety factor on the length predicted from the error.
 pub(super) const SAFETY: f64 = 0.85;
-/// Maximum ratio of successive step lengths.
+/// The maximum ratio of successive step lengths.
 pub(super) const GROWTH: f64 = 6.0;
-/// Minimum ratio of successive step lengths.
+/// The minimum ratio of successive step lengths.
 pub(super) const SHRINKING: f64 = 1.0 / 3.0;
 
 /// Tolerances and step lengths; lengths are positive in both directions of time.
@@ -54,8 +54,8 @@ impl Control {
     /// ```text
     /// |h| e₅² / √(n (e₅² + 0.01 e₃²))
     /// ```
-    /// which falls with h⁸ although the estimates are of lower order [Hairer, Nørsett, Wanner 1993,
-    /// II.10].
+    /// which decreases as h⁸ although the estimates are of lower order [Hairer, Nørsett, Wanner
+    /// 1993, II.10].
     pub(super) fn error(h: f64, (fifth, third): (f64, f64), n: usize) -> f64 {
         let both = fifth + 0.01 * third;
         let both = if both <= 0.0 { 1.0 } else { both };
@@ -85,8 +85,8 @@ impl Control {
     }
 }
 
-/// x^(1/8), computed with correctly rounded square roots, so that it has the same bits on every
-/// machine.
+/// x^(1/8), computed with correctly rounded square roots, so that the result has the same bits on
+/// every machine.
 fn eighth_root(x: f64) -> f64 {
     x.sqrt().sqrt().sqrt()
 }

@@ -3,7 +3,7 @@
 //! ```text
 //! u(s) = r₁ + s (r₂ + (1−s) (r₃ + s (r₄ + (1−s) (r₅ + s (r₆ + (1−s) (r₇ + s r₈))))))
 //! ```
-//! The first four terms are the cubic Hermite interpolant, the others combine the stages with three
+//! The first four terms are the cubic Hermite interpolant; the others combine the stages with three
 //! further ones, which are evaluated when a state inside the step is first needed [Hairer, Nørsett,
 //! Wanner 1993, II.6].
 
@@ -44,7 +44,7 @@ impl Polynomial {
     /// Sets the polynomial to that of the step between two nodes with these stages.
     ///
     /// # Errors
-    /// A failure of the field, with its time; the polynomial is then invalid.
+    /// A failure of the field, with the time at which it occurred; the polynomial is then invalid.
     pub(super) fn make<F: VectorField>(
         &mut self,
         (field, count): (&mut F, &mut u64),
@@ -78,8 +78,8 @@ impl Polynomial {
         Ok(())
     }
 
-    /// Writes the coefficients of the powers of the time since the start of the step, each for
-    /// `dim` components.
+    /// Writes the coefficients of the powers of the time since the start of the step; each
+    /// coefficient has `dim` components.
     pub(super) fn coefficients(&self, dim: usize, coefficients: &mut Vec<f64>) {
         coefficients.clear();
         let mut scale = 1.0;
@@ -111,7 +111,8 @@ fn basis(s: f64) -> [f64; 8] {
     factors
 }
 
-/// The derivatives of the basis with respect to t at s, of positive order, for a step of this length.
+/// The derivatives, of positive order and with respect to t, of the basis at s, for a step of this
+/// length.
 fn derivatives(s: f64, order: u32, length: f64) -> [f64; 8] {
     let falling = |power: u32| (0..order).map(|j| f64::from(power) - f64::from(j)).product::<f64>();
     let scale = length.powi(-i32::try_from(order).unwrap_or(i32::MAX));

@@ -3,7 +3,8 @@
 //! A step evaluates f at twelve times, and a pulse may lie between two of them. Before a step is
 //! accepted, its polynomial p is therefore inserted into the equations at the
 //! [times](crate::foresight) in the step that have to be examined: where the defect p′ − f(t, p)
-//! exceeds what the error of the polynomial explains, the step is repeated so as to end there.
+//! exceeds what the error of the polynomial explains, the step is repeated so as to end at that
+//! time.
 
 use pc_expr::{Failure, PolynomialMotion, VectorField};
 
@@ -15,12 +16,12 @@ use crate::foresight::places::{Ahead, Here};
 use crate::foresight::scatter::scatters;
 use crate::integration::stepper::Stepper;
 
-/// Allowed ratio of the polynomial's defect to the error of the step, since the polynomial is of
-/// lower order.
+/// The allowed ratio of the polynomial's defect to the error of the step; it is large because the
+/// polynomial is of lower order.
 const DEFECT: f64 = 100.0;
 
 impl<F: VectorField> Dop853<F> {
-    /// Finds the times to examine in the step ahead; if there are too many, returns the one that
+    /// Finds the times to examine in the step ahead; if there are too many, returns the time that
     /// the step must not pass.
     pub(super) fn look_ahead(
         &mut self,

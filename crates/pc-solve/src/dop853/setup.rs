@@ -26,7 +26,7 @@ use crate::settings::options::Options;
 /// stability demands. States are [projected](VectorField::project) at the end of each step, and
 /// inside steps where they are read. A step in which the field fails recoverably, or that violates
 /// an inequality, is repeated with half its length. No step allocates memory, except where f
-/// depends on t explicitly and turns within the step.
+/// depends on t explicitly and has a turning point within the step.
 ///
 /// ```
 /// use pc_solve::{Dop853, Integration, Method, Options, from_fn};
@@ -45,7 +45,7 @@ pub struct Dop853<F> {
     pub(super) control: Control,
     pub(super) places: Places,
     pub(super) stiffness: Stiffness,
-    /// Start and end of the last step, and end of the trial step.
+    /// The start and the end of the last step, and the end of the trial step.
     pub(super) start: Node,
     pub(super) end: Node,
     pub(super) trial: Node,
@@ -74,12 +74,12 @@ pub struct Dop853<F> {
 
 impl<F: VectorField> Dop853<F> {
     /// Starts at y(t0) = y0, one number per component, with the tolerances, step lengths
-    /// and limits of the options; their method is ignored.
+    /// and limits of the options; the method they choose is ignored.
     ///
     /// # Errors
     /// [`SolveError::Input`] unless all inputs are finite, of matching lengths and in their ranges;
-    /// [`InputError::Explicit`](crate::InputError::Explicit) if they choose how implicit equations
-    /// are solved, or an order.
+    /// [`InputError::Explicit`](crate::InputError::Explicit) if the options choose an order, or how
+    /// implicit equations are solved.
     pub fn new(field: F, t0: f64, y0: &[f64], options: &Options) -> Result<Self, SolveError> {
         check_start(&field, t0, y0)?;
         Options { method: Method::Dop853, ..options.clone() }.validate(y0.len())?;
@@ -123,8 +123,8 @@ impl<F: VectorField> Dop853<F> {
         }
     }
 
-    /// The time at which stiffness was first detected, if it was: from about then on stability
-    /// rather than accuracy limits the steps, and [`Method::Bdf`] can take longer ones.
+    /// The time at which stiffness was first detected, if it was: from about that time on,
+    /// stability rather than accuracy limits the steps, and [`Method::Bdf`] can take longer ones.
     pub fn stiff_from(&self) -> Option<f64> {
         self.stiffness.seen
     }

@@ -6,7 +6,7 @@ use super::arithmetic::{Weights, add_of, finish_of};
 use super::coefficients::{A2, A3, A4, A5, A6, A7, A8, A9, A10, A11, A12, C};
 use crate::error::NonFinite;
 
-/// A state of the motion with its rates. Rows may be longer than the state.
+/// A state of the motion, with its rates. Rows may be longer than the state.
 #[derive(Debug, Clone)]
 pub(super) struct Node {
     pub(super) t: f64,
@@ -16,7 +16,8 @@ pub(super) struct Node {
 
 /// Stages 6 to 12 of a step, from which its end and its dense output are computed.
 pub(super) type Stages = [Vec<f64>; 7];
-/// Stages 2 to 5, needed for the later stages only, then reused for the stages of dense output.
+/// Stages 2 to 5, which only the later stages need; their room is then reused for the stages of
+/// dense output.
 pub(super) type Early = [Vec<f64>; 4];
 
 /// Writes f(t, y), checks that it is finite, and counts the evaluation; rows may be longer than the
@@ -44,13 +45,13 @@ pub(super) fn evaluate<F: VectorField>(
     }
 }
 
-/// Computes the stages of a step from a node to t₁, and the state there. `argument` ends as the
-/// argument of the last stage.
+/// Computes the stages of a step from a node to t₁, and the state there. On return, `argument` is
+/// the argument of the last stage.
 ///
 /// Returns the sums of the error estimates.
 ///
 /// # Errors
-/// A failure of the field, with its time.
+/// A failure of the field, with the time at which it occurred.
 pub(super) fn advance<F: VectorField>(
     counted: (&mut F, &mut u64),
     from: &Node,
@@ -69,7 +70,7 @@ pub(super) fn advance<F: VectorField>(
     }
 }
 
-/// The same for rows of length LENGTH, or any length if that is 0.
+/// The same for rows of length LENGTH, or of any length if LENGTH is 0.
 fn advance_of<F: VectorField, const LENGTH: usize>(
     (field, count): (&mut F, &mut u64),
     from: &Node,

@@ -10,19 +10,19 @@ use crate::error::{Reason, SolveError};
 use crate::integration::breaks::next_break;
 use crate::integration::stepper::Stepper;
 
-/// A step that would end within this fraction of its length before a stop time or a break ends
-/// there.
+/// A step that would end just before a stop time or a break, within this fraction of its length, is
+/// made to end there.
 const LEFT: f64 = 0.01;
-/// First guess of the length of the first step if the state or its rates vanish.
+/// The first guess for the length of the first step if the state or its rates vanish.
 pub(super) const FIRST: f64 = 1e-6;
 
 /// The first step on another piece of the field may be as long as the last step before it, but at
 /// most this many times the initial length that the new rates suggest.
 const LEAP: f64 = 30.0;
 
-/// The reason why a step is rejected.
+/// Why a step is rejected.
 enum Refusal {
-    /// The error, which is more than 1 or NaN.
+    /// The error, which is greater than 1 or NaN.
     Error(f64),
     /// A component violates its inequality.
     Inequality,
@@ -33,7 +33,7 @@ enum Refusal {
 }
 
 impl<F: VectorField> Dop853<F> {
-    /// Makes a step in the direction of `towards`, of a length that the tolerances allow.
+    /// Makes a step in the direction of `towards`, with a length that the tolerances allow.
     pub(super) fn make_step(&mut self, towards: f64) -> Result<(), SolveError> {
         let t = self.end.t;
         let direction = 1.0_f64.copysign(towards - t);
@@ -117,7 +117,7 @@ impl<F: VectorField> Dop853<F> {
         Ok(next.or(self.stop_time))
     }
 
-    /// Tries a step to t₁; returns its error, at most 1.
+    /// Tries a step to t₁; returns the error of the step, which is at most 1.
     fn attempt(&mut self, t1: f64) -> Result<f64, Refusal> {
         let Dop853 { field, control, end, trial, tried, early, argument, statistics, .. } = self;
         let count = &mut statistics.rhs_evaluations;
@@ -145,8 +145,8 @@ impl<F: VectorField> Dop853<F> {
         }
     }
 
-    /// Sets components that violate their inequality by at most the tolerance to its boundary;
-    /// returns false if one violates it by more.
+    /// Sets each component that violates its inequality by at most the tolerance to the boundary;
+    /// returns false if a component violates its inequality by more.
     fn satisfy_inequalities(&mut self) -> bool {
         for (i, inequality) in self.limits.inequalities.iter().enumerate() {
             let value = self.trial.y[i];
@@ -211,7 +211,7 @@ impl<F: VectorField> Dop853<F> {
         (100.0 * h).min(by_rates).min(farthest)
     }
 
-    /// The error for steps that become too short, or cannot be made, because of what `failed`.
+    /// The error for steps that become too short, or that cannot be made, because of what `failed`.
     fn too_short(&mut self, failed: Option<(Reason, Failure)>) -> SolveError {
         if let Some((reason, failure)) = failed {
             return self.failed(reason, Some(failure));

@@ -10,9 +10,9 @@
 
 /// The boundary of stability on the negative real axis.
 pub(super) const BOUNDARY: f64 = 6.1;
-/// One in this many steps is examined as long as none is suspect.
+/// One in this many steps is examined as long as no step is suspect.
 const EVERY: u64 = 20;
-/// Number of suspect steps that indicate stiffness …
+/// The number of suspect steps that indicate stiffness, …
 pub(super) const SUSPECT: u32 = 15;
 /// … unless this many successive steps in between are not suspect.
 pub(super) const CLEAR: u32 = 6;
@@ -22,9 +22,9 @@ pub(super) const CLEAR: u32 = 6;
 pub(super) struct Stiffness {
     suspect: u32,
     clear: u32,
-    /// Steps since the start.
+    /// The number of steps since the start.
     steps: u64,
-    /// The time when stiffness was first detected, if it was.
+    /// The time at which stiffness was first detected, if it was.
     pub(super) seen: Option<f64>,
 }
 
@@ -35,7 +35,7 @@ impl Stiffness {
         self.seen.is_none() && (self.suspect > 0 || self.steps.is_multiple_of(EVERY))
     }
 
-    /// Notes h ρ of a step that ends at t.
+    /// Notes the value of h ρ for a step that ends at t.
     pub(super) fn note(&mut self, product: f64, t: f64) {
         if product > BOUNDARY {
             self.clear = 0;

@@ -50,27 +50,27 @@ use crate::solve::failure::SolveFailure;
 use crate::solve::solution::Solution;
 use crate::solve::solve::Solve;
 
-/// The number of members per thread that may be ahead of the member to be consumed next.
+/// The number of members per thread that may have begun ahead of the member to be consumed next.
 const WINDOW: usize = 64;
 
-/// Maximum number of threads: more threads do not help, and far more would exhaust memory and end
-/// the program.
+/// The maximum number of threads: more threads would not help, and many more would exhaust the
+/// memory and end the program.
 const MOST_THREADS: usize = 1024;
 
-/// The stack size of a thread in bytes, the usual one of the main thread: making a member may
-/// recurse deeply.
+/// The stack size of a thread in bytes, the usual size for the main thread: making a member may
+/// involve deep recursion.
 const STACK: usize = 8 << 20;
 
 /// Options for the computation of an ensemble.
 ///
-/// It caches the machine code compiled for the steps of its last members, and shares it with its
-/// clones.
+/// These options also cache the machine code compiled for the steps of the last members, and share
+/// it with their clones.
 #[derive(Debug, Clone)]
 pub struct Ensemble<'a> {
     threads: NonZeroUsize,
     window: Option<NonZeroUsize>,
     flag: Option<&'a AtomicBool>,
-    /// Number of lanes used by a thread.
+    /// The number of lanes used by a thread.
     pub(super) lanes: usize,
     pub(super) shelf: Shelf,
 }
@@ -93,8 +93,9 @@ impl<'a> Ensemble<'a> {
         Ensemble { threads, ..self }
     }
 
-    /// The maximum number of members begun and not yet consumed, by default 64 for each thread. It
-    /// bounds the memory in use, since results that wait for an earlier one are held.
+    /// The maximum number of members begun and not yet consumed, by default 64 for each thread.
+    /// This limits the memory in use, since results that wait for an earlier one are held in
+    /// memory.
     pub fn window(self, members: NonZeroUsize) -> Self {
         Ensemble { window: Some(members), ..self }
     }
@@ -114,8 +115,8 @@ impl<'a> Ensemble<'a> {
     /// Integrates each member as [`solve`](crate::solve()) does, and passes the trajectories to
     /// `consume` in the order of the members.
     ///
-    /// `make` returns the vector field of a member and its state at `t0`. It is called on the
-    /// thread that integrates.
+    /// `make` returns the vector field of a member and its state at `t0`. `make` is called on the
+    /// thread that integrates the member.
     ///
     /// With [`Method::Auto`](crate::Method::Auto) and [`Method::Dop853`](crate::Method::Dop853),
     /// members whose fields are [programs](VectorField::lanes) that do not read the time are
@@ -123,7 +124,7 @@ impl<'a> Ensemble<'a> {
     /// [`map_in_lanes`](Ensemble::map_in_lanes).
     ///
     /// # Errors
-    /// [`EnsembleError`] if threads cannot be started. An error of a member is its result.
+    /// [`EnsembleError`] if threads cannot be started. If a member fails, its error is its result.
     pub fn solve<F, E>(
         &self,
         members: Range<u64>,
@@ -180,8 +181,8 @@ impl<'a> Ensemble<'a> {
     /// Does any `work` for each member and passes its result to `consume` in the order of the
     /// members.
     ///
-    /// The work should check [`Stop`] regularly, and end on request. `consume` is called on this
-    /// thread.
+    /// The work should check [`Stop`] regularly, and end when that is requested. `consume` is
+    /// called on this thread.
     ///
     /// # Errors
     /// [`EnsembleError`] if threads cannot be started. A panic of the work is the result of its
@@ -211,8 +212,8 @@ impl<'a> Ensemble<'a> {
         self.window.map_or(WINDOW.saturating_mul(self.workers()), NonZeroUsize::get) as u64
     }
 
-    /// Runs a worker on each thread, which takes items from a queue and returns their results;
-    /// these are consumed in the order of the items. At most `window` items are begun and not yet
+    /// Runs a worker on each thread; workers take items from a queue and return their results,
+    /// which are consumed in the order of the items. At most `window` items are begun and not yet
     /// consumed.
     pub(super) fn of_items<R: Send>(
         &self,
@@ -269,21 +270,21 @@ impl<'a> Ensemble<'a> {
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum MemberError<E> {
-    /// It could not be made.
+    /// The member could not be made.
     Make(E),
-    /// Its integration failed; with the outputs reached.
+    /// The integration of the member failed; this holds the outputs reached before the failure.
     Solve(Box<SolveFailure>),
-    /// Its vector field panicked.
+    /// The vector field of the member panicked.
     Panic {
         /// The message of the panic.
         message: String,
-        /// The state (t, y) at the end of the last internal step, if there was one.
+        /// The time and state (t, y) at the end of the last internal step, if there was one.
         reached: Option<(f64, Vec<f64>)>,
     },
 }
 
 impl<E> MemberError<E> {
-    /// The last state reached, (t, y), if the integration had begun.
+    /// The last time and state reached, (t, y), if the integration had begun.
     pub fn reached(&self) -> Option<(f64, &[f64])> {
         match self {
             MemberError::Make(_) => None,

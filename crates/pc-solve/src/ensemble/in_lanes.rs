@@ -18,7 +18,7 @@ use crate::integration::integration::Ending;
 use crate::integration::trajectory::Trajectory;
 use crate::settings::options::Options;
 
-/// Maximum number of members in a group, which is handed out as a whole to reduce the overhead.
+/// The maximum number of members in a group, which is handed out as a whole to reduce the overhead.
 const GROUP: u64 = 64;
 
 impl Ensemble<'_> {
@@ -28,20 +28,21 @@ impl Ensemble<'_> {
     /// `begin` returns any data that belong to a member and, if lanes can integrate it, its
     /// [field](pc_expr::VectorField::lanes) and its state at t₀. `in_lane` turns its complete
     /// motion into its result. `alone` integrates members that lanes do not support, or whose
-    /// motion was not completed there; it should check [`Stop`] regularly. All are called on the
-    /// thread that integrates.
+    /// motion was not completed in a lane; it should check [`Stop`] regularly. All three closures
+    /// are called on the thread that integrates the member.
     ///
     /// Lanes are used with [`Method::Auto`](crate::Method::Auto) and
     /// [`Method::Dop853`](crate::Method::Dop853), for fields that do not read time, without
-    /// inequalities, a minimum step or a stop time. `begin` has to exclude events and breaks. Lanes
-    /// use the method of [`Dop853`](crate::Dop853), but with fused multiply-adds, so that the last
-    /// digits differ. With `Auto` a member that turns out to be stiff is integrated `alone`;
-    /// `Dop853` does not look for stiffness here. Each lane does the same operations as it would
-    /// alone: results depend neither on the number of threads or lanes nor on the other members.
+    /// inequalities, a minimum step or a stop time. `begin` must not offer lanes a field with
+    /// events or breaks. Lanes use the method of [`Dop853`](crate::Dop853), but with fused
+    /// multiply-adds, so that the last digits differ. With `Auto` a member that turns out to be
+    /// stiff is integrated `alone`; `Dop853` does not look for stiffness here. Each lane performs
+    /// the same operations as it would alone: results depend neither on the number of threads or
+    /// lanes nor on the other members.
     ///
     /// # Errors
-    /// [`EnsembleError`] if threads cannot be started. If the work for a member panics, that is the
-    /// result of the member.
+    /// [`EnsembleError`] if threads cannot be started. If the work for a member panics, the panic
+    /// is the result of the member.
     pub fn map_in_lanes<C, T: Send>(
         &self,
         members: Range<u64>,
@@ -96,7 +97,7 @@ impl Ensemble<'_> {
     }
 }
 
-/// The results of a group, as far as they are known.
+/// The results of a group, as far as these are known.
 type Group<T> = Vec<Option<Result<T, Panicked>>>;
 
 /// A group in progress.
@@ -123,11 +124,11 @@ struct Supply<'a, 'q, 's, C, T, G, B, L, A> {
     alone: &'a A,
     /// Groups in progress; only the last may have members that have not begun.
     open: VecDeque<Open<T>>,
-    /// A member that was begun and waits for a block of its program.
+    /// A member that was begun and waits for a block with its program.
     held: Option<Begun<C>>,
 }
 
-/// A member that was begun.
+/// A member that has begun.
 type Begun<C> = (u64, C, LaneField, Vec<f64>);
 
 impl<C, T, G, B, L, A> Supply<'_, '_, '_, C, T, G, B, L, A>
@@ -137,7 +138,8 @@ where
     L: Fn(u64, C, Trajectory) -> T,
     A: Fn(u64, C, &Stop<'_>) -> T,
 {
-    /// The kernels for the next member in a lane; none if there is no member left, or on a request to stop.
+    /// The kernels for the next member in a lane; none if there is no member left, or if a stop is
+    /// requested.
     fn prepare(&mut self) -> Option<Arc<Kernels>> {
         while !self.stop.requested()
             && let Some((member, known, field, start)) =
@@ -155,7 +157,7 @@ where
         None
     }
 
-    /// The next member that can be in a lane, of any program.
+    /// The next member, with any program, that a lane can integrate.
     fn first(&mut self, from: Source) -> Option<Begun<C>> {
         while !self.stop.requested() {
             let member = self.next_member(from)?;
@@ -212,7 +214,7 @@ where
         }
     }
 
-    /// Delivers the groups in progress, incomplete, and ends.
+    /// Delivers the groups in progress, although they are incomplete, and ends.
     fn give_up(&mut self) {
         for open in self.open.drain(..) {
             self.queue.finish(open.number, open.results);

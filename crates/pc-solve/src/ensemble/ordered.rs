@@ -1,4 +1,4 @@
-//! Results of many threads in the order of the members, in bounded memory.
+//! The results of many threads in the order of the members, held in bounded memory.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -8,14 +8,14 @@ use std::thread;
 
 use crate::ensemble::stop::Stop;
 
-/// Hands members out in order, receives their results in any order, and delivers these in order.
-/// Members that have begun are less than `window` ahead of the one to be delivered next.
+/// Hands members out in order, receives their results in any order, and delivers the results in
+/// order. No member that has begun is `window` or more ahead of the one to be delivered next.
 pub(super) struct Queue<'a, T> {
     end: u64,
     window: u64,
     stop: &'a Stop<'a>,
     state: Mutex<State<T>>,
-    /// Signals that a result has come, or that a thread has ended.
+    /// Signals that a result has arrived, or that a thread has ended.
     finished: Condvar,
     /// Signals that a result was taken, or that no more will be taken.
     taken: Condvar,
@@ -28,7 +28,7 @@ struct State<T> {
     wanted: u64,
     /// Results that wait for an earlier one.
     results: BTreeMap<u64, T>,
-    /// Whether a worker panicked: the results of what it had begun will not come.
+    /// Whether a worker panicked: the results of the members it had begun will not come.
     broken: bool,
 }
 
@@ -41,7 +41,7 @@ impl<'a, T> Queue<'a, T> {
     }
 
     /// Waits until the window has room and returns the next member; none if all have been begun, or
-    /// on a request to stop.
+    /// if a stop is requested.
     pub(super) fn begin(&self) -> Option<u64> {
         let mut state = self.state();
         let full = |state: &State<T>| state.next < self.end && state.next - state.wanted >= self.window;
@@ -51,7 +51,7 @@ impl<'a, T> Queue<'a, T> {
         self.hand_out(&mut state)
     }
 
-    /// The same without waiting: also none if the window has no room.
+    /// The same without waiting: the result is also none if the window has no room.
     pub(super) fn begin_if_room(&self) -> Option<u64> {
         let mut state = self.state();
         if state.next < self.end && state.next - state.wanted >= self.window {
@@ -75,14 +75,14 @@ impl<'a, T> Queue<'a, T> {
         self.finished.notify_all();
     }
 
-    /// Says that a thread ends: what [`take`](Queue::take) waits for may no longer come.
+    /// Announces that a thread ends: what [`take`](Queue::take) waits for may no longer come.
     pub(super) fn leave(&self) {
         let state = self.state();
         self.finished.notify_all();
         drop(state);
     }
 
-    /// Waits for the result of the member that comes next; none if it will never come.
+    /// Waits for the result of the member that comes next; none if that result will never come.
     pub(super) fn take(&self, member: u64) -> Option<T> {
         let mut state = self.state();
         loop {

@@ -12,23 +12,23 @@ pub enum InputError {
     #[error("the vector field has no components")]
     NoComponents,
 
-    /// A list with one number for each component has the wrong length.
+    /// A list that needs one number for each component has the wrong length.
     #[error("{what}: expected one number for each component ({expected}), found {found}")]
     Length {
         /// Which list.
         what: &'static str,
-        /// Dimension of the vector field.
+        /// The dimension of the vector field.
         expected: usize,
-        /// Length of the list.
+        /// The length of the list.
         found: usize,
     },
 
-    /// A checkpoint belongs to a motion with another number of events.
+    /// A checkpoint belongs to a motion with a different number of events.
     #[error("the checkpoint belongs to another motion: its number of events is {found}, not {expected}")]
     EventCount {
-        /// Number of events of the motion.
+        /// The number of events of the motion.
         expected: usize,
-        /// Number of events in the checkpoint.
+        /// The number of events in the checkpoint.
         found: usize,
     },
 
@@ -41,7 +41,7 @@ pub enum InputError {
         value: f64,
     },
 
-    /// An option that must be positive is not.
+    /// An option that must be positive is not positive.
     #[error("{what} is {value}, but must be positive")]
     NotPositive {
         /// Which option.
@@ -50,18 +50,18 @@ pub enum InputError {
         value: f64,
     },
 
-    /// The maximum order is 0 or beyond the orders of the method.
+    /// The maximum order is 0 or higher than any order of the method.
     #[error("the maximum order is {found}, but {method} has orders 1 to {limit}")]
     MaxOrder {
         /// The method.
         method: Method,
-        /// Its highest order.
+        /// The highest order of the method.
         limit: u32,
         /// The order requested.
         found: u32,
     },
 
-    /// An option that the method does not have.
+    /// An option that the method does not support.
     #[error("{method} does not let you choose {what}: leave the choice out")]
     Explicit {
         /// The method.
@@ -86,23 +86,23 @@ pub enum InputError {
         method: Method,
     },
 
-    /// The least step is larger than the largest.
+    /// The minimum step is larger than the maximum step.
     #[error("the minimum step {min} is larger than the maximum step {max}")]
     StepBounds {
-        /// The least step.
+        /// The minimum step.
         min: f64,
-        /// The largest step.
+        /// The maximum step.
         max: f64,
     },
 
-    /// A checkpoint belongs to an integration with another number of sensitivities.
+    /// A checkpoint belongs to an integration with a different number of sensitivities.
     #[error(
         "the checkpoint has {found} columns of sensitivities, but {expected} are requested: resume with the sensitivities that it was written with"
     )]
     Sensitivities {
-        /// Columns requested.
+        /// The number of columns requested.
         expected: usize,
-        /// Number of columns in the checkpoint.
+        /// The number of columns in the checkpoint.
         found: usize,
     },
 
@@ -110,7 +110,8 @@ pub enum InputError {
     #[error("no functional is given: a gradient needs at least one")]
     NoFunctional,
 
-    /// Integrals are read from an integration that has none, or requested from one that has begun.
+    /// Integrals are read from an integration that has none, or are requested of an integration
+    /// that has already begun.
     #[error("integrals must be requested once, before the first step")]
     NoIntegrals,
 
@@ -118,16 +119,16 @@ pub enum InputError {
     #[error("the integration was begun without sensitivities")]
     NoSensitivities,
 
-    /// Derivatives are requested of a motion whose rates jump where it crosses a surface, at a time
-    /// that depends on the variable of differentiation.
+    /// Derivatives are requested of a motion whose rates jump where it crosses a surface, and the
+    /// time of crossing depends on the variable of differentiation.
     #[error(
         "{0}: the derivatives of the motion jump with it, and would not show this. Make the jump an event that switches a \
          state, or smooth it, as tanh does"
     )]
     RateJump(RateJump),
 
-    /// Derivatives with respect to parameters are requested, with events whose derivatives with respect to
-    /// these are unknown.
+    /// Derivatives with respect to parameters are requested for a motion with events whose
+    /// derivatives with respect to the parameters are unknown.
     #[error(
         "an event resets the state, but does not say how its function and its reset depend on the parameters: sensitivities need these derivatives"
     )]
@@ -150,7 +151,7 @@ pub enum InputError {
     #[error("the maximum number of steps must be at least 1")]
     MaxSteps,
 
-    /// A linear solver is chosen together with the fixed-point iteration, which uses none.
+    /// A linear solver is chosen together with the fixed-point iteration, which does not use one.
     #[error(
         "a linear solver is chosen, but the fixed-point iteration solves no linear systems: choose Newton's iteration, or no linear solver"
     )]
@@ -169,7 +170,7 @@ pub enum InputError {
         rows: usize,
         /// Its columns.
         columns: usize,
-        /// Dimension of the vector field.
+        /// The dimension of the vector field.
         expected: usize,
     },
 
@@ -178,11 +179,11 @@ pub enum InputError {
         "a band of {lower} diagonals below the main one and {upper} above is too wide for a Jacobian of {components} × {components}"
     )]
     BandTooWide {
-        /// Diagonals below the main one.
+        /// The number of diagonals below the main one.
         lower: usize,
-        /// Diagonals above the main one.
+        /// The number of diagonals above the main one.
         upper: usize,
-        /// Dimension of the vector field.
+        /// The dimension of the vector field.
         components: usize,
     },
 
@@ -192,29 +193,29 @@ pub enum InputError {
          and {upper} above: widen the band"
     )]
     OutsideBand {
-        /// Name of the component of f.
+        /// The name of the component of f.
         row: String,
-        /// Name of the component of y.
+        /// The name of the component of y.
         column: String,
-        /// Diagonals below the main one.
+        /// The number of diagonals below the main one.
         lower: usize,
-        /// Diagonals above the main one.
+        /// The number of diagonals above the main one.
         upper: usize,
     },
 
     /// The start does not satisfy an inequality.
     #[error("{component} at the start is {value}, but must be {inequality}")]
     Inequality {
-        /// Name of the component.
+        /// The name of the component.
         component: String,
-        /// What it must satisfy.
+        /// The inequality that the component must satisfy.
         inequality: Inequality,
-        /// Its value.
+        /// The value of the component.
         value: f64,
     },
 
     /// Inequalities are given for a field with a projection, which could move states so that they
-    /// violate them again.
+    /// violate the inequalities again.
     #[error(
         "inequalities cannot be imposed on a vector field that projects its states: the projection could violate them"
     )]
@@ -229,11 +230,11 @@ pub enum InputError {
         "output times must increase throughout or decrease throughout: {time} (number {index} from 0) follows {previous}"
     )]
     TimesNotMonotonic {
-        /// Position in the list.
+        /// The position of the time in the list.
         index: usize,
-        /// The time before it.
+        /// The time that precedes the offending one.
         previous: f64,
-        /// The time that repeats the one before or reverses the direction.
+        /// The time that repeats the previous time or reverses the direction.
         time: f64,
     },
 
@@ -269,18 +270,18 @@ pub enum InputError {
         requested: f64,
         /// Where the output begins.
         start: f64,
-        /// Where it ends.
+        /// Where the output ends.
         end: f64,
     },
 
-    /// A time lies outside the last internal step, or beyond the next event in it.
+    /// A time lies outside the last internal step, or beyond the next event in that step.
     #[error("t = {requested} lies outside the last step, which covers t = {start} to {end}")]
     OutsideStep {
         /// The time requested.
         requested: f64,
         /// Where the step begins.
         start: f64,
-        /// Where it ends.
+        /// Where the step ends.
         end: f64,
     },
 
@@ -295,25 +296,26 @@ pub enum InputError {
         highest: u32,
     },
 
-    /// Derivatives with respect to parameters are requested from a vector field that has none.
+    /// Derivatives with respect to parameters are requested from a vector field that does not
+    /// provide them.
     #[error("the vector field does not provide its derivatives by the parameters")]
     NoParameterJacobian,
 
-    /// There is no such parameter.
+    /// There is no parameter with the number requested.
     #[error("there is no parameter number {index} (from 0): the number of parameters is {len}")]
     NoParameter {
         /// The number requested.
         index: usize,
-        /// Number of parameters.
+        /// The number of parameters.
         len: usize,
     },
 
-    /// There is no such component.
+    /// There is no component with the number requested.
     #[error("there is no component number {index} (from 0): the number of components is {dim}")]
     NoComponent {
         /// The number requested.
         index: usize,
-        /// Dimension of the vector field.
+        /// The dimension of the vector field.
         dim: usize,
     },
 
@@ -324,7 +326,7 @@ pub enum InputError {
     Exponents {
         /// The number requested.
         count: usize,
-        /// Dimension of the vector field.
+        /// The dimension of the vector field.
         dim: usize,
     },
 

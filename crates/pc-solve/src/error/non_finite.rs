@@ -1,14 +1,14 @@
 //! Numbers that are not finite.
 
-/// A number that is not finite: a vector field that reported no failure wrote it, or failed to
-/// write it.
+/// A number that is not finite: the vector field wrote it without reporting a failure, or left the
+/// entry unwritten.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NonFinite {
     /// A component of f(t, y).
     #[error("the rate of {component} is {value} at t = {t}")]
     Rate {
-        /// Name of the component.
+        /// The name of the component.
         component: String,
         /// NaN or an infinity.
         value: f64,
@@ -19,7 +19,7 @@ pub enum NonFinite {
     /// A Taylor coefficient of a solution.
     #[error("the Taylor coefficient of order {order} of {component} is {value} at t = {t}")]
     Coefficient {
-        /// Name of the component.
+        /// The name of the component.
         component: String,
         /// Its order.
         order: usize,
@@ -32,9 +32,9 @@ pub enum NonFinite {
     /// An entry of ∂f/∂y.
     #[error("the derivative of the rate of {row} by {column} is {value} at t = {t}")]
     Jacobian {
-        /// Name of the component of f.
+        /// The name of the component of f.
         row: String,
-        /// Name of the component of y.
+        /// The name of the component of y.
         column: String,
         /// NaN or an infinity.
         value: f64,
@@ -45,7 +45,7 @@ pub enum NonFinite {
     /// A component of (∂f/∂y) v.
     #[error("the derivative of the rate of {component} in a direction is {value} at t = {t}")]
     Product {
-        /// Name of the component of f.
+        /// The name of the component of f.
         component: String,
         /// NaN or an infinity.
         value: f64,
@@ -56,9 +56,9 @@ pub enum NonFinite {
     /// An entry of ∂f/∂p.
     #[error("the derivative of the rate of {row} by parameter {parameter} (from 0) is {value} at t = {t}")]
     ParameterJacobian {
-        /// Name of the component of f.
+        /// The name of the component of f.
         row: String,
-        /// Number of the parameter.
+        /// The number of the parameter.
         parameter: usize,
         /// NaN or an infinity.
         value: f64,
@@ -71,9 +71,9 @@ pub enum NonFinite {
         "the derivative of the rate of {component} along sensitivity number {column} (from 0) is {value} at t = {t}"
     )]
     Variation {
-        /// Name of the component of f.
+        /// The name of the component of f.
         component: String,
-        /// Number of the column s.
+        /// The number of the column s.
         column: usize,
         /// NaN or an infinity.
         value: f64,
@@ -84,7 +84,7 @@ pub enum NonFinite {
     /// A component written by a [preconditioner](crate::Preconditioner).
     #[error("the preconditioner sets {component} to {value} at t = {t}")]
     Preconditioned {
-        /// Name of the component.
+        /// The name of the component.
         component: String,
         /// NaN or an infinity.
         value: f64,
@@ -95,46 +95,46 @@ pub enum NonFinite {
     /// The value of an event function.
     #[error("the function of the event {event} is {value} at t = {t}")]
     Event {
-        /// Its name.
+        /// The name of the event.
         event: String,
         /// NaN or an infinity.
         value: f64,
-        /// Where it was evaluated.
+        /// Where the function was evaluated.
         t: f64,
     },
 
     /// A value or derivative of a [functional](crate::Functional).
     #[error("{what} is {value} at t = {t}")]
     Functional {
-        /// Which.
+        /// Which value or derivative.
         what: String,
         /// NaN or an infinity.
         value: f64,
-        /// Where it was evaluated.
+        /// Where the functional was evaluated.
         t: f64,
     },
 
     /// A rate of an [integral](crate::Integrals).
     #[error("the rate of integral number {index} (from 0) is {value} at t = {t}")]
     Integrand {
-        /// Its number.
+        /// The number of the integral.
         index: usize,
         /// NaN or an infinity.
         value: f64,
-        /// Where it was evaluated.
+        /// Where the rate was evaluated.
         t: f64,
     },
 
     /// A component of a state after a reset.
     #[error("the event {event} sets {component} to {value} at t = {t}")]
     Reset {
-        /// Its name.
+        /// The name of the event.
         event: String,
-        /// Name of the component.
+        /// The name of the component.
         component: String,
         /// NaN or an infinity.
         value: f64,
-        /// When it occurred.
+        /// When the event occurred.
         t: f64,
     },
 }

@@ -12,7 +12,7 @@ use crate::error::return_code::Code;
 pub enum Reason {
     /// CVODES returned an error.
     Cvode {
-        /// Its return code.
+        /// The return code of CVODES.
         code: Code,
         /// Its message.
         message: String,
@@ -24,25 +24,25 @@ pub enum Reason {
         steps: u64,
         /// The time of the next output.
         t: f64,
-        /// The length of the last one.
+        /// The length of the last step.
         last: f64,
     },
 
-    /// Many steps together have covered almost none of the time that is left.
+    /// Many steps together have covered almost none of the remaining time.
     Crawls {
-        /// The number of these steps.
+        /// The number of these short steps.
         steps: u64,
-        /// The time they have advanced.
+        /// The time by which the short steps have advanced.
         by: f64,
-        /// The cause of their being short.
+        /// Why the steps are so short.
         cause: Shrinks,
     },
 
     /// The [deadline](crate::Options::deadline) passed.
     Ended(Spent),
 
-    /// The backward integration of the adjoint equations could not go on; time and state reached
-    /// are those of the motion there.
+    /// The backward integration of the adjoint equations could not go on; the time and the state
+    /// reached are those of the motion at that point.
     Adjoint(Box<Reason>),
 
     /// The end term of a [functional](crate::Functional) failed.
@@ -50,33 +50,33 @@ pub enum Reason {
 
     /// A terminal event ends the motion before the end of a [functional](crate::Functional).
     EndsEarly {
-        /// Its name.
+        /// The name of the event.
         event: String,
-        /// When it occurred.
+        /// When the event occurred.
         t: f64,
     },
 
-    /// Within one interval a tangent vector became a linear combination of those before it, up to
-    /// rounding error.
+    /// Within one interval, a tangent vector became a linear combination of the preceding ones, up
+    /// to rounding error.
     Collapsed {
-        /// Its number.
+        /// The number of the vector.
         vector: usize,
     },
 
     /// A component became infinite or NaN in a step.
     Overflow {
-        /// Name of the component.
+        /// The name of the component.
         component: String,
         /// NaN or an infinity.
         value: f64,
-        /// End of that step.
+        /// The end of the step in which this happened.
         t: f64,
     },
 
     /// The state could not be [projected](pc_expr::VectorField::project) onto the surface to which
     /// it belongs.
     Projection {
-        /// Time of that state.
+        /// The time of the state that could not be projected.
         t: f64,
     },
 
@@ -87,63 +87,63 @@ pub enum Reason {
     /// The explicit dependence of the field on time varies faster than floating-point times can
     /// resolve, by more than the tolerances.
     Unresolved {
-        /// Where it was detected.
+        /// The time at which this was detected.
         t: f64,
     },
 
     /// The vector field could not be evaluated, and no shorter step is possible.
     Rates {
-        /// Time of the state at which it was evaluated.
+        /// The time of the state at which the evaluation was tried.
         t: f64,
     },
 
     /// The motion reaches a corner or a jump of the field and neither crosses nor leaves it: it
-    /// would slide along it.
+    /// would slide along the corner or jump.
     Sliding {
-        /// The expression that vanishes there.
+        /// The expression that vanishes at the corner or jump.
         branch: String,
-        /// When it was reached.
+        /// When the corner or jump was reached.
         t: f64,
     },
 
     /// The motion reaches surfaces on which the field changes, and no continuation is consistent
     /// with the rates there.
     Undecided {
-        /// The functions that vanish on them.
+        /// The functions that vanish on these surfaces.
         surfaces: Vec<String>,
-        /// When they were reached.
+        /// When the surfaces were reached.
         t: f64,
     },
 
-    /// The function of an event could not be evaluated, or that of another event evaluated with it.
+    /// The function of an event, or of another event evaluated with it, could not be evaluated.
     Event {
-        /// Its name.
+        /// The name of the event.
         event: String,
-        /// Time of the state at which it was evaluated.
+        /// The time of the state at which the evaluation was tried.
         t: f64,
     },
 
     /// The reset of an event failed.
     Reset {
-        /// Its name.
+        /// The name of the event.
         event: String,
-        /// When it occurred.
+        /// When the event occurred.
         t: f64,
     },
 
     /// An event that resets the state is reached at zero speed: sensitivities are unbounded.
     Grazing {
-        /// Its name.
+        /// The name of the event.
         event: String,
-        /// When it occurred.
+        /// When the event occurred.
         t: f64,
     },
 
     /// Events that reset the state occur together: sensitivities depend on their order.
     Together {
-        /// Their names.
+        /// The names of the events.
         events: Vec<String>,
-        /// When they occurred.
+        /// When the events occurred.
         t: f64,
     },
 
@@ -151,37 +151,37 @@ pub enum Reason {
     Cascade {
         /// The event that has occurred too often.
         event: String,
-        /// How often it has occurred at that time.
+        /// How often that event has occurred at that time.
         occurrences: usize,
-        /// When they occurred.
+        /// When the resets occurred.
         t: f64,
     },
 
     /// The rates before or after a reset, which determine the jump of sensitivities, cannot be
     /// evaluated.
     Saltation {
-        /// When it occurred.
+        /// When the reset occurred.
         t: f64,
     },
 
     /// An event [accumulates](crate::Accumulation).
     Accumulation {
-        /// Its name.
+        /// The name of the event.
         event: String,
-        /// How often it has occurred.
+        /// How often the event has occurred.
         occurrences: u64,
-        /// The limit of its occurrences, if their intervals continue as a geometric series.
+        /// The limit of the times of occurrence, if their intervals continue as a geometric series.
         t: f64,
     },
 }
 
-/// The cause that keeps steps short.
+/// What keeps the steps short.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Shrinks {
     /// Rapid changes in the explicit dependence of the field on time.
     Time,
-    /// The component of this name, whose rate is the largest relative to the tolerances.
+    /// The component with this name: its rate is the largest relative to the tolerances.
     Component(String),
 }
 
@@ -226,7 +226,7 @@ impl Reason {
         self
     }
 
-    /// The return code of CVODES, if that is the reason.
+    /// The return code of CVODES that corresponds to the reason, if there is one.
     pub(super) fn code(&self) -> Option<Code> {
         match self {
             Reason::Cvode { code, .. } => Some(*code),
@@ -254,7 +254,7 @@ impl Reason {
         }
     }
 
-    /// Which limit was reached, if that is the reason.
+    /// Which limit was reached, if a limit is the reason.
     pub(super) fn ended(&self) -> Option<Spent> {
         match self {
             Reason::Ended(spent) => Some(*spent),

@@ -21,11 +21,11 @@ pub enum SolveError {
     /// memory ran out.
     #[error("{function} failed with code {code}: {message}")]
     Setup {
-        /// The function of SUNDIALS.
+        /// The function of SUNDIALS that failed.
         function: &'static str,
-        /// Its return code.
+        /// The return code of the function.
         code: i32,
-        /// What SUNDIALS said.
+        /// The message from SUNDIALS.
         message: String,
     },
 
@@ -35,7 +35,7 @@ pub enum SolveError {
 }
 
 impl SolveError {
-    /// Which limit ended the integration, if one did.
+    /// Which limit ended the integration, if any did.
     pub fn ended(&self) -> Option<Spent> {
         match self {
             SolveError::Integration(error) => error.reason.ended(),
@@ -43,7 +43,7 @@ impl SolveError {
         }
     }
 
-    /// The return code of CVODES, if that is the reason.
+    /// The return code of CVODES that corresponds to the reason, if there is one.
     pub fn code(&self) -> Option<Code> {
         match self {
             SolveError::Integration(error) => error.reason.code(),
@@ -51,7 +51,7 @@ impl SolveError {
         }
     }
 
-    /// The last state reached, (t, y), if the integration had begun.
+    /// The last time and state reached, (t, y), if the integration had begun.
     pub fn reached(&self) -> Option<(f64, &[f64])> {
         match self {
             SolveError::Integration(error) => Some((error.time, &error.state)),
@@ -62,17 +62,18 @@ impl SolveError {
 
 /// Why an integration could not go on, and the last state it reached.
 ///
-/// Its [`source`](Error::source) is the cause of [`failure`](IntegrationError::failure).
+/// The [`source`](Error::source) of this error is the cause of
+/// [`failure`](IntegrationError::failure).
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct IntegrationError {
-    /// Why it could not go on.
+    /// Why the integration could not go on.
     pub reason: Reason,
-    /// End of the last successful internal step.
+    /// The end of the last successful internal step.
     pub time: f64,
     /// The state at [`time`](IntegrationError::time), one number per component of the field.
     pub state: Vec<f64>,
-    /// The last failure of the vector field there: one that it reported itself, or
+    /// The last failure of the vector field there: one that the field itself reported, or
     /// [`NonFinite`](crate::NonFinite) for a number that is not finite.
     pub failure: Option<Failure>,
 }

@@ -9,12 +9,13 @@ use crate::settings::tolerance::Tolerance;
 /// The tolerance of a companion that uses a method of the same kind, relative to that of the
 /// motion.
 const FINER: f64 = 1e-3;
-/// The tolerance of a companion that uses Taylor's method; its error then is rounding error.
+/// The tolerance of a companion that uses Taylor's method; its error is then no more than rounding
+/// error.
 const BY_SERIES: f64 = 1e-16;
-/// The least tolerance of a companion that uses another method: below it, further steps add more
-/// rounding error than they remove truncation error.
+/// The smallest tolerance of a companion that uses another method: below it, further steps add more
+/// rounding error than the truncation error they remove.
 const LEAST: f64 = 1e-15;
-/// A motion at a tolerance up to this is as accurate as rounding allows, and so is one at
+/// A motion at a tolerance up to this is as accurate as rounding allows, and so is a motion at
 /// [`COARSE`].
 const ROUNDING: f64 = 4e-15;
 const COARSE: f64 = 1e-14;
@@ -22,20 +23,21 @@ const COARSE: f64 = 1e-14;
 const MORE_STEPS: u64 = 20;
 
 /// How a motion is integrated a second time, so that the distance between the two is the error of
-/// the first.
+/// the first motion.
 ///
 /// With the state y of the motion, ỹ of the companion and the true state y*, |y − ỹ| = |y − y*|
 /// (1 + O(|ỹ − y*|/|y − y*|)): the companion has to be several times more accurate.
 /// - A motion that is not stiff, and whose field has a [series](VectorField::series), has a
-///   companion by [`Method::Taylor`] at rtol 10⁻¹⁶, or at a thousandth of the tolerance where that
-///   is less: its states carry their rounding errors along. If the motion itself uses Taylor's
-///   method at such a tolerance, the errors of both are rounding errors, along different steps, and
-///   the distance is of their size.
-/// - Any other motion has a companion at a thousandth of its tolerance, at least 10⁻¹⁵, by
-///   [`Method::Auto`], or by [`Method::Bdf`] if the motion uses that. For a motion at rtol below
-///   4·10⁻¹⁵ the companion is no better: at 10⁻¹⁴ the errors of both are rounding errors.
+///   companion integrated with [`Method::Taylor`] at rtol 10⁻¹⁶, or at a thousandth of the motion's
+///   tolerance if that is less: the states of the companion carry their rounding errors along. If
+///   the motion itself uses Taylor's method at such a tolerance, the errors of both are rounding
+///   errors, made along different steps, and the distance is of the size of these errors.
+/// - Any other motion has a companion at a thousandth of its tolerance, but at least 10⁻¹⁵,
+///   integrated with [`Method::Auto`], or with [`Method::Bdf`] if the motion uses that method. For
+///   a motion at rtol below 4·10⁻¹⁵ the companion is no better: at 10⁻¹⁴ the errors of both are
+///   rounding errors.
 ///
-/// Absolute tolerances are reduced in the same ratio.
+/// Absolute tolerances are reduced by the same factor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Companion {
     options: Options,
@@ -87,7 +89,7 @@ impl Companion {
         self.options.method
     }
 
-    /// Its relative tolerance.
+    /// The relative tolerance of the companion.
     pub fn relative_tolerance(&self) -> f64 {
         self.options.relative_tolerance
     }

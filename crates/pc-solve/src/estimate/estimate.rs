@@ -48,7 +48,7 @@ pub struct ErrorEstimate {
 impl ErrorEstimate {
     /// The errors of `motion`, which was integrated from y(t0) = y0 with these events and options;
     /// the field and the events are in the state in which they were before that integration, and
-    /// `times` are those requested.
+    /// `times` are the output times requested.
     pub fn of<F: VectorField>(
         motion: &Solution,
         start: (F, f64, &[f64]),
@@ -60,7 +60,7 @@ impl ErrorEstimate {
     }
 
     /// Like [`of`](ErrorEstimate::of), but passes the end (t, ỹ⁻) of each step of the companion to
-    /// `step`, to show progress or to stop it.
+    /// `step`, to show progress or to stop the companion.
     pub fn observed<F: VectorField>(
         motion: &Solution,
         (mut field, t0, y0): (F, f64, &[f64]),
@@ -83,13 +83,14 @@ impl ErrorEstimate {
         &self.companion
     }
 
-    /// Its outputs; the first [`len`](ErrorEstimate::len) correspond to those of the motion.
+    /// The outputs of the companion; the first [`len`](ErrorEstimate::len) correspond to those of
+    /// the motion.
     pub fn beside(&self) -> &Trajectory {
         &self.beside.trajectory
     }
 
     /// The number of outputs whose errors are known: all outputs of the motion, unless the
-    /// companion failed, was stopped or had another terminal event.
+    /// companion failed, was stopped or had a different terminal event.
     pub fn len(&self) -> usize {
         self.len
     }
@@ -99,8 +100,9 @@ impl ErrorEstimate {
         self.len == 0
     }
 
-    /// The errors of the components at output number `i`, which is less than [`len`](ErrorEstimate::len); if an
-    /// event ended both motions, those of the state at the event, whenever it occurred.
+    /// The errors of the components at output number `i`, which is less than
+    /// [`len`](ErrorEstimate::len); if an event ended both motions, the last errors are those of
+    /// the state at the event, whenever it occurred in each.
     pub fn errors(&self, motion: &Solution, i: usize) -> Vec<f64> {
         let (state, beside) = (motion.trajectory.state(i), self.beside.trajectory.state(i));
         state.iter().zip(beside).map(|(value, beside)| error_of(*value, *beside)).collect()

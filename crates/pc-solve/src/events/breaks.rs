@@ -1,15 +1,16 @@
 //! Jumps and poles at which functions change their signs.
 //!
 //! A time at which a function changes its sign is bracketed to rounding error. At the distances d,
-//! 8 d, … from there a continuous function grows, one that jumps stays nearly constant, and one
-//! with a pole of order p falls by a factor of 8ᵖ from each distance to the next, on both sides.
+//! 8 d, … from that time, on both sides, a continuous function grows, a function that jumps stays
+//! nearly constant, and a function with a pole of order p falls by a factor of 8ᵖ from each
+//! distance to the next.
 
 use crate::events::samples::{Look, Sample};
 
 /// How a function changes its sign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Break {
-    /// Through zero, as far as the samples tell.
+    /// Through zero, as far as the samples show.
     None,
     /// By a jump.
     Jump,
@@ -17,21 +18,21 @@ pub(crate) enum Break {
     Pole,
 }
 
-/// Ratio of successive distances.
+/// The ratio of successive distances.
 const RATIO: f64 = 8.0;
-/// Number of distances on each side.
+/// The number of distances on each side.
 const DISTANCES: i32 = 4;
 /// Near a pole a function falls by at least this factor from one distance to the next.
 const FALL: f64 = 1.5;
-/// A function counts as jumping if on each side it varies by at most this fraction of its jump.
+/// A function counts as jumping if, on each side, it varies by at most this fraction of its jump.
 const STEADY: f64 = 1e-3;
 /// A jump is larger than this fraction of the function's largest value in the step; anything
 /// smaller may be rounding error.
 const RESOLVED: f64 = 1e-6;
 
 /// How each function changes its sign between `a` and `b`, which are close to each other, judging
-/// by its values at the distances, in multiples of `rounding`: on both sides, or on one side only
-/// if the other lies before the step or a function fails there.
+/// by its values at the distances, which are multiples of `rounding`: on both sides, or on one side
+/// only if the other side lies before the step or a function fails there.
 pub(crate) fn breaks<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
     a: &Sample,
     b: &Sample,

@@ -2,28 +2,30 @@
 //!
 //! Between two samples a and b of a function g, which are h apart in time, g differs from their
 //! chord by g[a, b, c] (t − t_a)(t − t_b), the remainder of Newton's interpolation with the divided
-//! difference through a third sample c. As far as the samples tell, a function with the same sign
-//! at a and b keeps that sign in between, and one that changes sign passes through zero once, if
+//! difference through a third sample c. As far as the samples show, a function with the same sign
+//! at a and b keeps that sign in between, and a function that changes sign passes through zero
+//! once, if
 //! ```text
 //! (√|a| + √|b|)² > |g[a, b, c]| h²   and   |b − a| > |g[a, b, c]| h².
 //! ```
-//! An interval for which this fails with the third sample of either neighbour is halved.
+//! An interval is halved if this condition fails with the third sample taken from either
+//! neighbouring interval.
 
 use crate::events::samples::{Look, Sample};
 
-/// Safety factor for the remainder, since its divided difference is only an estimate.
+/// The safety factor for the remainder, since its divided difference is only an estimate.
 const SAFETY: f64 = 3.0;
-/// Maximum number of samples in a search.
+/// The maximum number of samples in a search.
 const MOST: usize = 256;
-/// Intervals shorter than this fraction of the whole are not halved.
+/// Intervals shorter than this fraction of the whole interval are not halved.
 const SHORTEST: f64 = 1.0 / 4096.0;
-/// An interval is divided at this fraction if the functions fail in its middle.
+/// An interval is divided at this fraction if the functions fail at its midpoint.
 const BESIDE: f64 = 0.4375;
 
 /// Adds samples between `left` and the last of `samples` where a function may have more roots than
 /// its signs show.
 ///
-/// Where the functions fail, the samples end; the time and the failure are returned.
+/// The samples end where the functions fail; the time and the failure are then returned.
 pub(crate) fn look_closer<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
     left: &Sample,
     samples: &mut Vec<Sample>,

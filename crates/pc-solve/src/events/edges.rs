@@ -1,19 +1,19 @@
-//! Sampling where functions have no value along a step: at a pole that is met exactly, and beyond
+//! Sampling where functions have no value along a step: at a pole that is hit exactly, and beyond
 //! an edge of their domain.
 //!
-//! Functions may have passed through zero before such an edge, √(1 − t) − 0.2 at t = 0.96 for
-//! example, although the next sample lies beyond it: samples are therefore taken up to the edge.
+//! Functions may have passed through zero before such an edge, as √(1 − t) − 0.2 does at t = 0.96,
+//! although the next sample lies beyond it: samples are therefore taken up to the edge.
 
 use crate::events::samples::{Look, SAME, Sample};
 
-/// The distance from a time at which functions have no value, in multiples of the rounding error of
-/// the time, at which they are evaluated on both sides of it.
+/// Where functions have no value at a time, they are evaluated on both sides of it, at this
+/// distance in multiples of the rounding error of the time.
 const BESIDE: f64 = 1.0;
 
 /// Extends the samples after `left` where the functions have failed at a time: with samples on both
-/// sides of it, as for a pole, if the functions have values there; else with samples up to the
-/// edge, and returns the failure beyond it. At the end of the search, `to`, the values just before
-/// it are used as those there.
+/// sides of that time, as for a pole, if the functions have values there; else with samples up to
+/// the edge, in which case the failure beyond the edge is returned. At the end of the search, `to`,
+/// the values just before `to` are used.
 pub(super) fn approach<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
     left: &Sample,
     samples: &mut Vec<Sample>,

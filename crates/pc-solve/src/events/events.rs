@@ -58,7 +58,7 @@ impl<'a> FnEvents<'a> {
         self
     }
 
-    /// Adds an event with a reset that turns y⁻ into y⁺.
+    /// Adds an event with a reset that changes y⁻ to y⁺.
     pub fn with_reset(
         mut self,
         event: Event,
@@ -145,10 +145,10 @@ impl Events for FnEvents<'_> {
 /// An event that occurred.
 ///
 /// The resets of simultaneous events apply in order: each starts from the state that the previous
-/// one left.
+/// reset has produced.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Occurrence {
-    /// Its index among the [events](Events::events), from 0.
+    /// The index of the event among the [events](Events::events), from 0.
     pub event: usize,
     /// The time.
     pub time: f64,
@@ -160,16 +160,17 @@ pub struct Occurrence {
 }
 
 /// When occurrences of an event count as accumulated, like the bounces of a ball that comes to
-/// rest: an integration from event to event cannot pass that time.
+/// rest: an integration from event to event cannot pass the time at which they accumulate.
 ///
-/// They do if their last intervals shrink steadily and, continued as a geometric series, sum to
-/// less than a small fraction of the first of the shrinking intervals; or if they are barely
-/// distinct from each other in view of rounding: the last times lie within 1e-12 |t|. Neither
-/// depends on the length of the integration. An event whose function stays below the absolute
-/// tolerance of the state between two occurrences is not resolved, and may be missed.
+/// Occurrences count as accumulated if the last intervals between them shrink steadily and,
+/// continued as a geometric series, sum to less than a small fraction of the first of the shrinking
+/// intervals. They also do if rounding leaves them barely distinct from each other: the last times
+/// lie within 1e-12 |t|. Neither criterion depends on the length of the integration. An event whose
+/// function stays below the absolute tolerance of the state between two occurrences is not
+/// resolved, and may be missed.
 ///
 /// A regular motion whose intervals shrink that far before they grow again needs a smaller
-/// fraction; with 0 only the test for rounding applies.
+/// fraction; with a fraction of 0, only the test for rounding applies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Accumulation {
     /// The number of consecutive occurrences of one event considered, at least 4.
@@ -179,7 +180,7 @@ pub struct Accumulation {
 }
 
 impl Default for Accumulation {
-    /// 6 occurrences and a remaining fraction of 1e-5.
+    /// The default: 6 occurrences and a remaining fraction of 1e-5.
     fn default() -> Self {
         Accumulation { occurrences: 6, within: 1e-5 }
     }
@@ -188,12 +189,12 @@ impl Default for Accumulation {
 /// Relative difference below which times are barely resolved.
 const UNRESOLVED: f64 = 1e-12;
 
-/// The latest times of one event, and how often it has occurred.
+/// The latest times of one event, and how often that event has occurred.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct History {
     pub(crate) times: VecDeque<f64>,
     pub(crate) occurrences: u64,
-    /// The interval after which each interval has been shorter than the one before.
+    /// The first of the shrinking intervals: since then, each has been shorter than the one before.
     pub(crate) longest: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Search for the first passage of functions through zero along a step.
+//! Search for the first passage of a function through zero along a step.
 
 use pc_expr::Direction;
 
@@ -13,13 +13,13 @@ const LOCATED: f64 = 4.0 * f64::EPSILON;
 /// to have a pole there.
 const NARROW: f64 = 64.0;
 
-/// On which side of zero each function is.
+/// The side of zero on which each function is.
 #[derive(Debug)]
 pub(crate) struct Sides {
     directions: Vec<Direction>,
-    /// 1, −1, or 0 while a function is at zero.
+    /// The sides: 1, −1, or 0 while a function is at zero.
     sides: Vec<f64>,
-    /// The magnitude that a function at zero must exceed to count as having left it.
+    /// The magnitude that a function at zero must exceed to count as having left zero.
     noise: Vec<f64>,
 }
 
@@ -36,7 +36,7 @@ impl Clone for Sides {
     }
 }
 
-/// The result of the search along a step.
+/// The result of a search along a step.
 pub(crate) enum Passage {
     /// No event occurs up to this sample.
     Clear(Sample),
@@ -48,18 +48,19 @@ pub(crate) enum Passage {
 pub(crate) struct Crossing {
     /// Just after the first passage.
     pub(crate) at: Sample,
-    /// The indices of these functions, ascending.
+    /// The indices of these functions, in ascending order.
     pub(crate) events: Vec<usize>,
     /// The magnitude above which each function counts as different from zero there.
     pub(crate) noise: Vec<f64>,
-    /// The side of each of them just afterwards; 0 where it stays at zero.
+    /// The side of each of these functions just afterwards; 0 where the function stays at zero.
     pub(crate) beyond: Vec<f64>,
 }
 
 /// The result of locating a passage.
 enum Located {
     Crossing(Crossing),
-    /// No event occurs up to this sample: functions are back on their sides, or have passed poles.
+    /// No event occurs up to this sample: the functions are back on their sides, or have passed
+    /// poles.
     Clear(Sample),
 }
 
@@ -70,7 +71,7 @@ const MOST_TOUCHES: u32 = 32;
 const EARLY: [f64; 4] = [1e-12, 1e-9, 1e-6, 1e-3];
 
 impl Sides {
-    /// Functions with these event directions, whose sides are not yet known.
+    /// The sides, not yet known, of functions with these event directions.
     pub(crate) fn new(directions: Vec<Direction>) -> Sides {
         let n = directions.len();
         Sides { directions, sides: vec![0.0; n], noise: vec![0.0; n] }
@@ -92,8 +93,8 @@ impl Sides {
     }
 
     /// Notes that the functions `events` are at zero, where they have just been located: until a
-    /// reset moves them away by more than `noise`, they are on neither side. Functions whose
-    /// `noise` is 0 have jumped to the sides `beyond`.
+    /// reset moves them away from zero by more than `noise`, they are on neither side. Functions
+    /// whose `noise` is 0 have jumped to the sides `beyond`.
     pub(crate) fn arrive(&mut self, events: &[usize], noise: &[f64], beyond: &[f64]) {
         for (&i, &side) in events.iter().zip(beyond) {
             self.sides[i] = if noise[i] > 0.0 { 0.0 } else { side };
@@ -101,8 +102,8 @@ impl Sides {
         }
     }
 
-    /// The functions that a jump of the state to these values carries from their sides to zero or
-    /// through it, in their directions, ascending.
+    /// The indices, in ascending order, of the functions that a jump of the state to these values
+    /// carries from their sides to zero or through zero, in their directions.
     pub(crate) fn carried(&self, values: &[f64]) -> Vec<usize> {
         (0..values.len()).filter(|&i| self.crossed(i, values[i])).collect()
     }
@@ -112,8 +113,8 @@ impl Sides {
         self.sides[i]
     }
 
-    /// Sets the sides after a jump of the state. Functions within `noise` of zero take the side
-    /// that they move to.
+    /// Sets the sides after a jump of the state. Functions within `noise` of zero take the side to
+    /// which they move.
     pub(crate) fn jump(&mut self, values: &[f64], noise: Vec<f64>) {
         self.sides.fill(0.0);
         self.noise = noise;
@@ -121,7 +122,7 @@ impl Sides {
     }
 
     /// Notes that the functions `events` have passed through zero at `values`, to the sides
-    /// `beyond`; they must exceed `noise` to pass again.
+    /// `beyond`; the functions must exceed `noise` to pass again.
     pub(crate) fn cross(&mut self, events: &[usize], values: &[f64], noise: &[f64], beyond: &[f64]) {
         for (&i, &side) in events.iter().zip(beyond) {
             self.sides[i] = side;
@@ -145,7 +146,7 @@ impl Sides {
         values.iter().enumerate().any(|(i, &value)| self.crossed(i, value))
     }
 
-    /// Notes values up to which no event has occurred.
+    /// Notes the values at a time up to which no event has occurred.
     pub(crate) fn pass(&mut self, values: &[f64]) {
         values.iter().enumerate().for_each(|(i, &value)| self.pass_one(i, value));
     }
@@ -264,7 +265,7 @@ impl Sides {
         Ok(None)
     }
 
-    /// Moves `left` to `right`, unless there is a passage in between.
+    /// Moves `left` to `right` unless there is a passage in between.
     fn between<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &mut self,
         left: &mut Sample,
@@ -300,7 +301,8 @@ impl Sides {
         Ok(None)
     }
 
-    /// Samples beyond zero for a function that has the same sign at all three given samples.
+    /// Looks for a sample beyond zero of a function that has the same sign at all three given
+    /// samples.
     fn hidden<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &self,
         three: [&Sample; 3],
@@ -343,8 +345,9 @@ impl Sides {
     }
 
     /// Locates the first passage, touch or pole, which lies between `a` and `b`, by the Illinois
-    /// method with the earliest secant of the functions, and by bisection where that is slow. Also
-    /// returns the functions that change sign there at a pole, with their sides beyond it.
+    /// method with the earliest zero of the functions' secants, and by bisection where that method
+    /// is slow. Also returns the functions that change sign there at a pole, with their sides
+    /// beyond the pole.
     fn locate<E, F: FnMut(f64, &mut [f64]) -> Result<(), E>>(
         &self,
         mut a: Sample,

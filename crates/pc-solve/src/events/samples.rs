@@ -1,10 +1,10 @@
 //! Values of event functions along a step.
 
-/// Times that differ by less than this relative difference count as equal: events between them are
+/// Times with a relative difference less than this count as equal: events between them are
 /// simultaneous.
 pub(super) const SAME: f64 = 64.0 * f64::EPSILON;
 
-/// The values of all functions at a time.
+/// The values of all functions at one time.
 #[derive(Debug, Clone)]
 pub(crate) struct Sample {
     pub(crate) t: f64,
@@ -32,7 +32,7 @@ pub(crate) struct Room {
     pub(crate) largest: Vec<f64>,
 }
 
-/// Number of samples allocated at the beginning.
+/// The number of samples allocated at the beginning.
 const ROOM: usize = 64;
 
 impl Room {

@@ -1,12 +1,13 @@
-//! The times in the next step at which the field may do something that the method does not see.
+//! The times in the next step at which the field may do something that the method does not notice.
 
 use pc_expr::{PolynomialMotion, SteepFunctions, Surprises, TimeDependence, VectorField};
 
 use crate::error::SolveError;
 
-/// Number of times, from start to end, at which a field with unknown time dependence is examined.
+/// The number of times, from start to end, at which a field with unknown time dependence is
+/// examined.
 const SAMPLES: f64 = 64.0;
-/// Maximum number of times that are examined in one step because of fast oscillations.
+/// The maximum number of times that are examined in one step because of fast oscillations.
 const MOST: usize = 16;
 /// The number of times that may be examined in a step doubles after each step without surprises, up
 /// to this many doublings.
@@ -17,12 +18,12 @@ const ENOUGH: u32 = 200;
 /// The step ahead.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Ahead {
-    /// Its start and its planned end.
+    /// The start of the step and its planned end.
     pub(crate) t: f64,
     pub(crate) reach: f64,
     /// The end of the integration.
     pub(crate) end: f64,
-    /// Whether it is the first step, and its length was given; such a length is trusted.
+    /// Whether the step is the first one and its length was given; such a length is trusted.
     pub(crate) given: bool,
 }
 
@@ -33,7 +34,7 @@ impl Ahead {
     }
 }
 
-/// The times to examine, and the work this has taken.
+/// The times to examine, and the work that the examination has taken.
 #[derive(Debug)]
 pub(crate) struct Places {
     dependence: TimeDependence,
@@ -45,33 +46,35 @@ pub(crate) struct Places {
     min_step: f64,
     /// The number of successive steps that had too many times to examine and no surprises.
     unsurprising: u32,
-    /// Evaluations and shortened steps since the last restart.
+    /// The numbers of evaluations and of shortened steps since the last restart.
     pub(crate) evaluations: u64,
     pub(crate) limited: u64,
     /// The times to examine in the step ahead, ordered in its direction.
     pub(crate) found: Vec<f64>,
-    /// Those of them that come from the motion along a step that has been tried.
+    /// The times in `found` that come from the motion along a step that has been tried.
     along: Vec<f64>,
-    /// A time beyond which there are too many to examine in one step.
+    /// A time beyond which there are too many times to examine in one step.
     pub(crate) crowded: Option<f64>,
-    /// The times of fast oscillations, and their number.
+    /// The times to examine because of fast oscillations, and how many there are.
     many: Vec<f64>,
     crowd: usize,
     unknown: bool,
 }
 
-/// What a method knows about the start of the step ahead.
+/// What a method knows at the start of the step ahead.
 pub(crate) trait Here {
-    /// The motion that the method predicts from there; none if it cannot tell before the step.
+    /// The motion that the method predicts from there; none if the method cannot predict it before
+    /// the step.
     ///
     /// # Errors
     /// [`SolveError`] if the method fails.
     fn prediction(&mut self) -> Result<Option<PolynomialMotion<'_>>, SolveError>;
 
-    /// Checks that f is not mere noise between there and a nearby time.
+    /// Checks that f is not mere noise between the start of the step and the time `near`.
     ///
     /// # Errors
-    /// [`SolveError::Integration`] with [`Reason::Unresolved`](crate::Reason::Unresolved) if it is.
+    /// [`SolveError::Integration`] with [`Reason::Unresolved`](crate::Reason::Unresolved) if f is
+    /// noise.
     fn resolve(&mut self, near: f64, length: f64) -> Result<(), SolveError>;
 }
 
@@ -179,7 +182,8 @@ impl Places {
         self.steep.as_mut().is_some_and(|steep| steep.hide(between, motion))
     }
 
-    /// Replaces the times that came from the motion in the step tried before by those of this one.
+    /// Replaces the times that came from the motion in the step tried before with those from this
+    /// motion.
     pub(crate) fn look_along(&mut self, (t, reach): (f64, f64), motion: PolynomialMotion<'_>) {
         let Places { found, along, .. } = self;
         found.retain(|place| !along.contains(place));
@@ -196,13 +200,13 @@ impl Places {
         self.found.sort_unstable_by(|a, b| ((a - b) * (reach - t)).total_cmp(&0.0));
     }
 
-    /// The smallest difference of times that methods can resolve.
+    /// The smallest difference between times that methods can resolve.
     fn least(&self, t: f64, reach: f64) -> f64 {
         (1e-13 * t.abs().max(reach.abs())).max(self.min_step)
     }
 
     /// Notes the times to examine along a motion; returns the time up to which these are known, if
-    /// it is before `reach`.
+    /// that time is before `reach`.
     fn follow(&mut self, (t, reach): (f64, f64), motion: PolynomialMotion<'_>) -> Option<f64> {
         let enough = self.unsurprising > ENOUGH;
         let Surprises { few, many, until, .. } = self.steep.as_mut()?.surprises((t, reach), motion, enough);

@@ -1,16 +1,16 @@
-//! Detection of functions of time that are noise to a method.
+//! Detection of functions of time that look like noise to a method.
 
 use crate::foresight::SURPRISE;
 
-/// Number of intervals between evaluations of the field.
+/// The number of intervals between the evaluations of the field.
 const PLACES: usize = 16;
 
 /// Whether f scatters between a time and a nearby one, by enough to affect a step of this `length`:
 /// its second differences are large, while those of a smooth function vanish at so small a
 /// distance.
 ///
-/// `rates` writes f at a fraction of the way, and the tolerances of the state there; it returns
-/// false if f fails, which is left to the method to handle.
+/// `rates` writes f at a fraction of the way to the nearby time, and the tolerances of the state
+/// there; it returns false if f fails, and handling the failure is left to the method.
 pub(crate) fn scatters(
     dim: usize,
     length: f64,

@@ -1,6 +1,6 @@
 //! Times at which a field is not smooth: no step crosses one.
 
-/// Relative difference below which two times count as equal: twice that of CVODES.
+/// The relative difference below which two times count as equal: twice the one that CVODES uses.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
 /// Whether two times are equal up to rounding error.
@@ -8,7 +8,7 @@ fn are_close(a: f64, b: f64) -> bool {
     (a - b).abs() <= ROUNDINGS * a.abs().max(b.abs())
 }
 
-/// The break at t, up to rounding error, if there is one.
+/// The break that equals t up to rounding error, if there is one.
 pub(crate) fn break_at(breaks: &[f64], t: f64) -> Option<f64> {
     breaks.iter().copied().find(|&time| are_close(time, t))
 }
@@ -25,11 +25,11 @@ fn following(breaks: &[f64], t: f64, end: f64) -> Option<f64> {
     next.filter(|&time| end.is_infinite() || !are_close(time, end))
 }
 
-/// The time from which breaks count as being ahead, t or a break close to it, and the first of
-/// those that lie before the end.
+/// The time from which breaks count as being ahead, which is t or a break close to t; and the first
+/// break ahead, if it lies before the end.
 ///
 /// A break that differs from t by rounding error only, as after an event, is too close for a step
-/// and counts as reached.
+/// and counts as having been reached.
 pub(crate) fn next_break(breaks: &[f64], mut t: f64, end: f64) -> (f64, Option<f64>) {
     let mut next = following(breaks, t, end);
     while let Some(time) = next.filter(|&time| are_close(time, t)) {

@@ -31,7 +31,8 @@ pub(crate) fn check_start(field: &impl VectorField, t0: f64, y0: &[f64]) -> Resu
     Ok(())
 }
 
-/// Checks that the start satisfies the inequalities: one for each component, or none at all.
+/// Checks that the initial state satisfies the inequalities, of which there is one for each
+/// component, or none at all.
 pub(crate) fn check_inequalities(
     field: &impl VectorField,
     y0: &[f64],

@@ -7,10 +7,10 @@ use crate::error::InputError;
 ///
 /// With s = (t − centre)/(end − start), it is y = Σ_k c_k sᵏ with c_k = y⁽ᵏ⁾(centre)
 /// (end − start)ᵏ/k! from the method's own polynomial for k ≤ q. The centre is the end of the step;
-/// for a Taylor polynomial, which loses digits elsewhere, its start. Where states are projected
-/// after a step, the method's polynomial misses the state at the end opposite the centre by the
-/// error of a step; the term of degree q + 1 corrects this. So the segments of a motion join up to
-/// rounding error, and have the order of the method.
+/// for a Taylor polynomial, which loses digits elsewhere, it is the start. Where states are
+/// projected after a step, the method's polynomial misses the state at the end opposite the centre
+/// by the error of a step; the term of degree q + 1 corrects this. So the segments of a motion
+/// agree where they join, up to rounding error, and have the order of the method.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Segment {
     start: f64,
@@ -43,18 +43,18 @@ impl Segment {
         self.coefficients.extend(gap.map(|gap| gap / power));
     }
 
-    /// Start and end.
+    /// The start and the end.
     pub fn span(&self) -> (f64, f64) {
         (self.start, self.end)
     }
 
-    /// Number of components of a state.
+    /// The number of components of a state.
     pub fn dim(&self) -> usize {
         self.dim
     }
 
-    /// Writes y(t) to `state`, of length [`dim`](Segment::dim), not projected; outside the span the
-    /// polynomial is extrapolated.
+    /// Writes y(t) to `state`, of length [`dim`](Segment::dim), not projected; outside the span,
+    /// the polynomial is extrapolated.
     pub fn evaluate(&self, t: f64, state: &mut [f64]) {
         let s = (t - self.centre) / (self.end - self.start);
         state.fill(0.0);
@@ -81,11 +81,11 @@ impl Segment {
 /// A motion as a function of time: [`Segment`]s, each beginning where the one before ends.
 ///
 /// It is continuous except at resets by events, where it is continuous from the right in the
-/// direction of integration; at its end it is the limit from the left.
+/// direction of integration; at the end of the motion it is the limit from the left.
 ///
 /// It consists of the polynomials alone, without the vector field: where the field
-/// [projects](pc_expr::VectorField::project) its states, those inside steps miss the constraints
-/// and the conserved integrals by the error of a step. Outputs and
+/// [projects](pc_expr::VectorField::project) its states, the states inside steps miss the
+/// constraints and the conserved integrals by the error of a step. Outputs and
 /// [`Integration::interpolate`](crate::Integration::interpolate) are projected; for projected
 /// states, interpolate during the integration, or project the states evaluated here.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -99,7 +99,7 @@ impl DenseOutput {
         &self.segments
     }
 
-    /// Start and end; none if there is no segment.
+    /// The start and the end; none if there is no segment.
     pub fn span(&self) -> Option<(f64, f64)> {
         Some((self.segments.first()?.start, self.segments.last()?.end))
     }
@@ -115,7 +115,7 @@ impl DenseOutput {
         Ok(state)
     }
 
-    /// ẏ(t), which may jump between steps by the error of a step.
+    /// The derivative ẏ(t), which may jump between steps by the error of a step.
     ///
     /// # Errors
     /// [`InputError::OutsideSpan`]
@@ -139,7 +139,7 @@ impl DenseOutput {
 }
 
 impl Extend<Segment> for DenseOutput {
-    /// Appends segments; the first begins where the last one ends.
+    /// Appends segments; the first of them begins where the last segment so far ends.
     fn extend<I: IntoIterator<Item = Segment>>(&mut self, segments: I) {
         self.segments.extend(segments);
     }

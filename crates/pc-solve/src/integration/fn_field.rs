@@ -97,7 +97,7 @@ impl<R, J, S, V, P, C, W> FnField<R, J, S, V, P, C, W> {
     /// The same field with a closure that writes ∂fᵢ/∂yⱼ to entry `i + j * dim` of its last
     /// argument.
     ///
-    /// Every entry must be written, zeros too.
+    /// Every entry must be written, including zeros.
     pub fn with_jacobian<K>(self, jacobian: K) -> FnField<R, K, S, V, P, C, W>
     where
         K: FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
@@ -105,7 +105,7 @@ impl<R, J, S, V, P, C, W> FnField<R, J, S, V, P, C, W> {
         with!(self, jacobian = jacobian, sparse_jacobian, jvp, parameter_jacobian, projection, vjp)
     }
 
-    /// The same field, declared to have ∂fᵢ/∂yⱼ that vanish outside `pattern`, dim × dim.
+    /// The same field, declared to have ∂fᵢ/∂yⱼ that vanish outside the dim × dim `pattern`.
     pub fn with_sparsity(self, pattern: Pattern) -> Self {
         FnField { shape: Shape { pattern: Some(pattern), ..self.shape }, ..self }
     }
@@ -113,8 +113,8 @@ impl<R, J, S, V, P, C, W> FnField<R, J, S, V, P, C, W> {
     /// The same field with a closure that writes the ∂fᵢ/∂yⱼ of the
     /// [pattern](FnField::with_sparsity), in its order, to its last argument.
     ///
-    /// Every entry must be written. The closure also provides the dense Jacobian, unless that has a
-    /// closure of its own.
+    /// Every entry must be written. The closure also provides the dense Jacobian, unless the dense
+    /// Jacobian has a closure of its own.
     pub fn with_sparse_jacobian<K>(self, sparse_jacobian: K) -> FnField<R, J, K, V, P, C, W>
     where
         K: FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
@@ -141,7 +141,7 @@ impl<R, J, S, V, P, C, W> FnField<R, J, S, V, P, C, W> {
     /// The same field with a number of parameters p and a closure that writes ∂fᵢ/∂pⱼ to entry
     /// `i + j * dim` of its last argument.
     ///
-    /// Every entry must be written, zeros too.
+    /// Every entry must be written, including zeros.
     pub fn with_parameters<K>(self, parameters: usize, parameter_jacobian: K) -> FnField<R, J, S, V, K, C, W>
     where
         K: FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
@@ -150,8 +150,8 @@ impl<R, J, S, V, P, C, W> FnField<R, J, S, V, P, C, W> {
         with!(field, parameter_jacobian = parameter_jacobian, jacobian, sparse_jacobian, jvp, projection, vjp)
     }
 
-    /// The same field with a closure that moves its last argument to the surface of the states at
-    /// time t.
+    /// The same field with a closure that moves its last argument onto the surface of possible
+    /// states at time t.
     ///
     /// Far from that surface it returns an error, as [`VectorField::project`] does.
     pub fn with_projection<K>(self, projection: K) -> FnField<R, J, S, V, P, K, W>
@@ -162,13 +162,13 @@ impl<R, J, S, V, P, C, W> FnField<R, J, S, V, P, C, W> {
     }
 
     /// The same field, declared not to depend on t explicitly, so that an integrator need not check
-    /// this.
+    /// for such dependence.
     pub fn autonomous(self) -> Self {
         FnField { shape: Shape { autonomous: true, ..self.shape }, ..self }
     }
 
-    /// The same field with names of its components, for messages; a component without one is called
-    /// `y[i]`.
+    /// The same field with names of its components, for messages; a component without a name is
+    /// called `y[i]`.
     pub fn with_names<N: Into<String>>(self, names: impl IntoIterator<Item = N>) -> Self {
         let names = names.into_iter().map(Into::into).collect();
         FnField { shape: Shape { names, ..self.shape }, ..self }
@@ -285,7 +285,7 @@ where
     }
 }
 
-/// The error for a closure or pattern that the vector field lacks.
+/// The error for a closure or a pattern that the vector field lacks.
 #[derive(Debug, thiserror::Error)]
 #[error("this vector field was given no {0}")]
 struct Missing(&'static str);

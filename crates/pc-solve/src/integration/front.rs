@@ -12,8 +12,8 @@ use crate::integration::held_sides::write_functions;
 use crate::integration::integration::Integration;
 use crate::integration::stepper::Stepper;
 
-/// While the motion slides along surfaces, steps are divided into this many times as many parts for
-/// the search.
+/// While the motion slides along surfaces, each step is divided into this many times as many parts
+/// for the search.
 const ALONG_SURFACES: u32 = 16;
 
 impl<S: Stepper, E: Events> Integration<S, E> {
@@ -111,11 +111,11 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 
     /// Writes the times at which the event functions are evaluated, the last being `to`, or an
-    /// earlier time at which the search ends. Returns whether they separate all roots.
+    /// earlier time at which the search ends. Returns whether these times separate all roots.
     ///
     /// Where the functions are a program, the times separate their roots along the polynomial of
-    /// the step; for closures, and where states are read through constraints or as momenta, the
-    /// times divide the step into equal parts.
+    /// the step; for closures, and where the functions read states through constraints or as
+    /// momenta, the times divide the step into equal parts.
     fn look_at(&mut self, mut to: f64, times: &mut Vec<f64>) -> Result<bool, SolveError> {
         times.clear();
         let from = self.front.t;
@@ -182,8 +182,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(separated)
     }
 
-    /// Whether the end is so close to a restart that no step is possible; the integration is then
-    /// moved to the end.
+    /// Returns whether the end is so close to a restart that no step is possible; if so, moves the
+    /// integration to the end.
     fn arrives(&mut self, towards: f64) -> Result<bool, SolveError> {
         let target = self.engine.stop_time().unwrap_or(towards);
         let rounding = 4.0 * f64::EPSILON * target.abs().max(self.front.t.abs());
@@ -245,7 +245,7 @@ enum SearchFailure {
 }
 
 /// Writes the event functions at a state to `values`, which are initially NaN; `blamed` becomes the
-/// first function that is not finite or was not written before a failure.
+/// first function whose value is not finite or was not written before a failure.
 fn values_at(
     events: &mut impl Events,
     t: f64,

@@ -6,7 +6,7 @@ use pc_expr::{Failure, RootSeparation, Sliding, VectorField};
 #[derive(Debug, Clone, Default)]
 pub(crate) struct HeldSides {
     pub(crate) sides: Vec<f64>,
-    /// Whether these sides are known to be those of the motion at the front.
+    /// Whether these sides are known to be those on which the motion is at the front.
     pub(crate) are_known: bool,
     /// Whether the functions depend on time alone.
     of_time: bool,
@@ -14,14 +14,14 @@ pub(crate) struct HeldSides {
     pub(crate) place: Vec<f64>,
     /// What separates the roots of the functions.
     pub(crate) separation: Option<RootSeparation>,
-    /// The parts of the motion so far that slid along surfaces.
+    /// The parts of the motion so far in which it slid along surfaces.
     pub(crate) slides: Vec<Slide>,
     /// All changes of side, if they are to be recorded.
     pub(crate) passages: Option<Vec<Passage>>,
 }
 
 impl HeldSides {
-    /// The sides of a field at a start, where they are not yet known.
+    /// The sides of a field at a start, where the sides are not yet known.
     pub(crate) fn of(field: &mut impl VectorField) -> HeldSides {
         let dim = field.dim();
         match field.switching() {
@@ -51,9 +51,9 @@ impl HeldSides {
 pub struct Slide {
     /// The function that vanishes on the surface.
     pub surface: String,
-    /// When it begins.
+    /// When this part begins.
     pub from: f64,
-    /// When it ends; none while it lasts.
+    /// When this part ends; none while it lasts.
     pub until: Option<f64>,
 }
 
@@ -64,13 +64,13 @@ pub(crate) struct Passage {
     pub(crate) surfaces: Vec<usize>,
     pub(crate) time: f64,
     pub(crate) state: Vec<f64>,
-    /// The sides before this time, if surfaces were reached, and after it.
+    /// The sides before this time, if surfaces were reached, and the sides after it.
     pub(crate) before: Vec<f64>,
     pub(crate) after: Vec<f64>,
 }
 
-/// Writes the functions whose zeros an integration looks for: those of the surfaces, and 1 − σ² for those along which
-/// the motion slides.
+/// Writes the functions whose zeros an integration looks for: those of the surfaces, and 1 − σ² for
+/// the surfaces along which the motion slides.
 pub(crate) fn write_functions(
     field: &mut impl VectorField,
     held: &HeldSides,

@@ -1,4 +1,4 @@
-//! An integration by any method; events may interrupt it.
+//! An integration with any method; events may interrupt it.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -15,12 +15,13 @@ use crate::integration::pace::Pace;
 use crate::integration::statistics::Statistics;
 use crate::integration::stepper::Stepper;
 
-/// An integration of ẏ = f(t, y) by a [method](Stepper), with [`Events`] or without.
+/// An integration of ẏ = f(t, y) with a [method](Stepper), with or without [`Events`].
 ///
-/// It is at a [`time`](Integration::time) with a [`state`](Integration::state). The method may be
-/// up to one step ahead; outputs in between are interpolated by its polynomial, so that additional
-/// outputs do not change the steps. The first step fixes the direction of time. After an error or a
-/// panic of the field the integration is at the last state it reached.
+/// At each moment, it is at a [`time`](Integration::time) with a [`state`](Integration::state). The
+/// method may be up to one step ahead; outputs in between are interpolated with the polynomial of
+/// the method, so that additional outputs do not change the steps. The first step fixes the
+/// direction of time. After an error or a panic of the field the integration is at the last state
+/// it reached.
 ///
 /// # Events
 ///
@@ -32,21 +33,22 @@ use crate::integration::stepper::Stepper;
 /// [`samples_per_step`](crate::Options::samples_per_step) equal parts of the step, and further
 /// between two of these where divided differences leave doubt, or where three successive values
 /// suggest that a function passes through zero twice. Between two samples an even number of
-/// passages of such a function may be missed; if the number is odd, one is found, so that its sign
-/// is always known. After a passage the rest of the step is searched anew.
+/// passages of such a function may be missed; if the number is odd, one is found, so that the sign
+/// of the function is always known. After a passage the rest of the step is searched anew.
 ///
 /// A passage is located to 1e-15 max(|t|, h/1000) in a step of length h, and functions that pass
 /// through zero within 16 times that distance of each other count as doing so simultaneously: their
 /// resets are applied one after the other, in the order of the events. After a reset the
 /// integration [restarts](Integration::restart) with the same options.
 ///
-/// A function that reaches or crosses zero and is back on its side within that time only touches
-/// zero: no event occurs. For one that reaches zero and stays there the event occurs on arrival,
-/// not on departure. This holds for the function as computed, with its rounding errors.
+/// A function that reaches or crosses zero, but is back on its original side within this
+/// resolution, only touches zero: no event occurs. For a function that reaches zero and stays
+/// there, the event occurs on arrival, not on departure. All this holds for the function as
+/// computed, with its rounding errors.
 ///
-/// If the reset of one event makes the function of another change its sign in its direction, that
-/// other event occurs at the same time, from the state after the reset, and so on until no further
-/// event is set off; more than 100 occurrences of one event at one time are an
+/// If the reset of one event makes the function of another change sign in the direction of that
+/// other event, the other event occurs at the same time, from the state after the reset, and so on
+/// until no further event is set off; more than 100 occurrences of one event at one time are an
 /// [error](crate::Reason::Cascade). The reset of an event does not make the event itself occur
 /// again.
 ///
@@ -60,17 +62,17 @@ use crate::integration::stepper::Stepper;
 /// At an event the state is y⁺: states are continuous from the right in the direction of
 /// integration.
 pub struct Integration<S, E = NoEvents> {
-    /// Its time is that of this integration.
+    /// The method; its time is the time of this integration.
     pub(crate) engine: S,
     pub(crate) events: E,
     pub(crate) histories: Vec<History>,
-    /// 1 or −1 since the first step.
+    /// The direction of time, 1 or −1, once the first step has been made.
     pub(crate) direction: Option<f64>,
     /// The time up to which events are known, with the event functions there, and y.
     pub(crate) front: Sample,
     pub(crate) front_state: Vec<f64>,
     pub(crate) sides: Sides,
-    /// The sides before the last move of the front, and room for those after the next step.
+    /// The sides before the last move of the front, and room for the sides after the next step.
     pub(crate) sides_before: Sides,
     pub(crate) sides_after: Sides,
     /// Room for samples along a step.
@@ -80,7 +82,7 @@ pub struct Integration<S, E = NoEvents> {
     pub(crate) noise: Vec<f64>,
     /// The sign that each of the `due` functions takes next.
     pub(crate) beyond: Vec<f64>,
-    /// y(`time`), unless `time` is that of the front.
+    /// The state y(`time`), unless `time` is the time of the front.
     pub(crate) output: Vec<f64>,
     /// Room for the end of a step.
     pub(crate) ahead: Vec<f64>,
@@ -98,7 +100,7 @@ pub struct Integration<S, E = NoEvents> {
     pub(crate) restarted: bool,
     /// Whether the motion has been restarted, for example by a reset.
     pub(crate) jumped: bool,
-    /// Its pace.
+    /// The pace of the integration.
     pub(crate) pace: Pace,
 }
 
@@ -107,11 +109,11 @@ pub struct Integration<S, E = NoEvents> {
 pub enum Ending {
     /// All output times were reached.
     Completed,
-    /// An observer stopped it.
+    /// An observer stopped the integration.
     Stopped,
-    /// A terminal event.
+    /// A terminal event ended the integration.
     Event {
-        /// Its index among the events.
+        /// The index of the event.
         event: usize,
     },
 }
@@ -128,7 +130,7 @@ impl<S: Stepper, E: Events> fmt::Debug for Integration<S, E> {
 }
 
 impl<S: Stepper> Integration<S> {
-    /// An integration by a method that has made no step yet.
+    /// An integration with a method that has not made a step yet.
     pub fn of(mut stepper: S) -> Self {
         let (t, state) = (stepper.time(), stepper.end_state().to_vec());
         let held = HeldSides::of(stepper.field_mut());
@@ -163,10 +165,10 @@ impl<S: Stepper> Integration<S> {
 
     /// Adds events to this integration, from its current time on.
     ///
-    /// Its [sensitivities](crate::Cvode::with_sensitivities), if any, are those of the motion with
-    /// its events: they jump at resets. For this, resets are also applied to nearby states, and
-    /// events with resets need [derivatives](Events::by_parameter) with respect to the parameters
-    /// of the sensitivities.
+    /// The [sensitivities](crate::Cvode::with_sensitivities), if any, are those of the motion with
+    /// its events: they jump at resets. For these sensitivities, resets are also applied to nearby
+    /// states, and events with resets need [derivatives](Events::by_parameter) with respect to the
+    /// parameters of the sensitivities.
     ///
     /// # Errors
     /// [`SolveError::Integration`] with [`Reason::Event`](crate::Reason::Event) if an event
@@ -218,7 +220,8 @@ impl<S: Stepper> Integration<S> {
         Ok(integration)
     }
 
-    /// Integrates to `t` and returns the state there, at once if it is the current time.
+    /// Integrates to `t` and returns the state there; returns it at once if `t` is the current
+    /// time.
     ///
     /// # Errors
     /// As for [`advance_to`](Integration::advance_to).
@@ -227,7 +230,8 @@ impl<S: Stepper> Integration<S> {
         Ok(self.state())
     }
 
-    /// Takes one step in the direction of `towards` and returns its end, which may lie beyond.
+    /// Takes one step in the direction of `towards` and returns its end, which may lie beyond that
+    /// time.
     ///
     /// # Errors
     /// As for [`step`](Integration::step).
@@ -283,7 +287,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.engine.into_field()
     }
 
-    /// Releases the field, which then takes the sides given by its own functions.
+    /// Releases the field, which from then on takes the sides given by its own functions.
     pub(crate) fn release(&mut self) {
         if let Some(field) = self.engine.field_mut().switching() {
             field.hold(None);
@@ -301,7 +305,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.engine.statistics()
     }
 
-    /// Restarts the clock of the [deadline](crate::Options::deadline), if there is one.
+    /// Restarts the clock of the [deadline](crate::Options::deadline), if a deadline is set.
     pub fn renew_deadline(&mut self) {
         if let Some(deadline) = &mut self.engine.limits_mut().deadline {
             deadline.renew();
@@ -326,13 +330,13 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// Restarts from y(t) = y, for example after a jump of the state.
     ///
     /// The options and the stop time stay the same, and the [statistics](Integration::statistics)
-    /// continue. A multistep method begins at order 1; the next step may go either way. The signs
-    /// of the event functions are those at the new state.
+    /// continue. A multistep method begins at order 1; the next step may go in either direction of
+    /// time. The signs of the event functions are those at the new state.
     ///
     /// # Errors
     /// [`SolveError::Input`] if a value is not finite or a length is wrong, or if there are
-    /// sensitivities, which [have to be given too](Integration::restart_with_sensitivities);
-    /// [`SolveError::Setup`] if CVODES refuses. The integration is then unchanged.
+    /// sensitivities, which then [have to be given too](Integration::restart_with_sensitivities);
+    /// [`SolveError::Setup`] if CVODES refuses. After an error the integration is unchanged.
     pub fn restart(&mut self, t: f64, y: &[f64]) -> Result<(), SolveError> {
         if !self.engine.column_parameters().is_empty() {
             return Err(InputError::Restart.into());

@@ -7,7 +7,7 @@ use crate::integration::stepper::Stepper;
 
 /// A method with its options, which can begin at a state.
 pub trait IntegrationMethod<F: VectorField> {
-    /// The method once it has begun.
+    /// The method after it has begun.
     type Stepper: Stepper<Field = F>;
 
     /// Begins at y(t0) = y0; the field must never be evaluated beyond `stop`, nor beyond the stop

@@ -1,15 +1,15 @@
-//! Limits of an integration by any method.
+//! Limits on an integration with any method.
 
 use pc_expr::Deadline;
 
 use crate::events::events::Accumulation;
 use crate::settings::inequality::Inequality;
 
-/// Limits of an integration by any method.
+/// Limits on an integration with any method.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Limits {
-    /// Maximum number of steps from one output to the next.
+    /// The maximum number of steps from one output to the next.
     pub max_steps: u64,
     /// The number of parts into which each step is divided for the search for events.
     pub samples_per_step: u32,

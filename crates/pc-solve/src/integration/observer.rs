@@ -6,7 +6,7 @@ use crate::events::events::Occurrence;
 
 /// An observer of a motion during its integration, which it may stop.
 ///
-/// [`Observed`] makes one from closures.
+/// [`Observed`] makes an observer from closures.
 pub trait Observer {
     /// An output.
     fn output(&mut self, t: f64, y: &[f64]) -> ControlFlow<()>;
@@ -17,14 +17,14 @@ pub trait Observer {
         ControlFlow::Continue(())
     }
 
-    /// The end (t, y⁻) of a step, or of the part of it before an event; called before the outputs
-    /// inside the step, to show progress or to stop.
+    /// The end (t, y⁻) of a step, or of the part of a step before an event; called before the
+    /// outputs inside the step, to show progress or to stop.
     fn step(&mut self, _t: f64, _y: &[f64]) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 }
 
-/// An [`Observer`] made of closures for outputs, events and steps.
+/// An [`Observer`] made from closures for outputs, events and steps.
 ///
 /// ```
 /// use std::ops::ControlFlow::Continue;

@@ -16,15 +16,16 @@ use crate::integration::stepper::Stepper;
 /// the tolerances of the state can make in it.
 const TOLERANCES: f64 = 10.0;
 
-/// An event that occurs more often than this at one time is taken to do so without end.
+/// An event that occurs more often than this at one time is taken to recur without end.
 const MOST_AT_ONCE: usize = 100;
 
 impl<S: Stepper, E: Events> Integration<S, E> {
     /// Applies the events at the front and reports them to `occurred`. Returns how the integration
     /// ends, if it does: at the first terminal event, or else because `occurred` stops it.
     ///
-    /// If the reset of one event carries the function of another through zero in its direction,
-    /// that other event occurs at the same time, after those that are already due.
+    /// If the reset of one event carries the function of another through zero in the direction of
+    /// that other event, the other event occurs at the same time, after the events that are already
+    /// due.
     pub(crate) fn occur(
         &mut self,
         occurred: &mut dyn FnMut(&Occurrence) -> ControlFlow<()>,
@@ -122,7 +123,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(ending)
     }
 
-    /// S⁻ at the front if a reset changes it; empty otherwise. Simultaneous resets are an error,
+    /// S⁻ at the front if a reset changes S; empty otherwise. Simultaneous resets are an error,
     /// since S⁺ is not defined there.
     fn sensitivities_before(&mut self, t: f64) -> Result<Vec<f64>, SolveError> {
         let events = self.events.events();
@@ -148,11 +149,11 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Err(self.failed(Reason::Cascade { event: self.name(event), occurrences: count, t }, None))
     }
 
-    /// Whether a function that a reset has carried through zero, or to zero exactly, does not
-    /// return to its side at once: along the motion from there, to first order in time.
+    /// Whether a function that a reset has carried through zero, or exactly to zero, does not
+    /// return at once to its original side along the motion from there, to first order in time.
     ///
-    /// It is an error if sensitivities would require knowing whether nearby motions arrive at zero,
-    /// too.
+    /// It is an error if sensitivities would require knowing whether nearby motions also arrive at
+    /// zero.
     fn stays_beyond(
         &mut self,
         event: usize,
@@ -186,8 +187,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
 
     /// The magnitude above which each function differs from zero after a reset. For a function whose
     /// event has occurred there and is near zero, |g| ≤ 10 Σᵢ |g(y + δᵢ) − g(y)| with the tolerances
-    /// δᵢ = rtol |yᵢ| + atolᵢ of the state, this is 2 |g|. A function that has jumped there is on its other side, however
-    /// near the state is to the jump.
+    /// δᵢ = rtol |yᵢ| + atolᵢ of the state, the magnitude is 2 |g|. A function that has jumped
+    /// there is on its other side, however close the state is to the jump.
     fn noise_after_reset(
         &mut self,
         t: f64,
@@ -237,7 +238,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         }
     }
 
-    /// The same without the projection of the field.
+    /// The same, without the projection of the field.
     pub(crate) fn reset_alone(&mut self, event: usize, t: f64, state: &mut [f64]) -> Result<(), SolveError> {
         let mut result = self.events.reset(event, t, state);
         if let (Ok(()), Some(i)) = (&result, state.iter().position(|value| !value.is_finite())) {

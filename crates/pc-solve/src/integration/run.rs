@@ -1,4 +1,4 @@
-//! Integration from event to event, through output times.
+//! Integration from event to event, through the output times.
 
 use std::ops::ControlFlow;
 
@@ -14,11 +14,12 @@ use crate::integration::stepper::Stepper;
 
 impl<S: Stepper, E: Events> Integration<S, E> {
     /// Integrates to `t`, or to an earlier terminal event, and reports events, including those at
-    /// `t`, to `occurred`, which may stop it. All simultaneous events are reported; if one of them
-    /// is terminal, the [`Ending`] is that event, even if `occurred` stops the integration.
+    /// `t`, to `occurred`, which may stop the integration. All simultaneous events are reported; if
+    /// one of them is terminal, the [`Ending`] is that event, even if `occurred` stops the
+    /// integration.
     ///
     /// # Errors
-    /// [`SolveError::Input`] if `t` is not finite, lies behind the current time or beyond the stop
+    /// [`SolveError::Input`] if `t` is not finite, lies before the current time or beyond the stop
     /// time; [`SolveError::Integration`] if the integration fails, with [`Reason::Event`],
     /// [`Reason::Reset`], [`Reason::Projection`] and [`Reason::Accumulation`] for events.
     pub fn advance_to(
@@ -31,11 +32,11 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(self.advance(t, t, &mut observer)?.unwrap_or(Ending::Completed))
     }
 
-    /// Integrates through `times`, monotonic from the current time, and passes each (t, y) to
-    /// `output`, which may stop it.
+    /// Integrates through `times`, which are monotonic from the current time on, and passes each
+    /// (t, y) to `output`, which may stop the integration.
     ///
-    /// The first may be the current time, but the last may not. The output at an event is y⁺; a
-    /// terminal event gives the last output.
+    /// The first of them may be the current time, but the last may not. The output at an event is
+    /// y⁺; a terminal event gives the last output.
     ///
     /// # Errors
     /// As for [`advance_to`](Integration::advance_to); outputs before the failure have been passed
@@ -83,7 +84,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(Ending::Completed)
     }
 
-    /// Checks that after `steps` steps another may be made towards `t`.
+    /// Checks that, after `steps` steps, another step towards `t` may be made.
     pub(crate) fn check_steps(&mut self, steps: u64, t: f64) -> Result<(), SolveError> {
         if steps < self.engine.limits().max_steps {
             return Ok(());
@@ -173,12 +174,12 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.advance(self.front.t, self.front.t, &mut observer)
     }
 
-    /// Whether `t` lies before the front, so that no event is left to occur at `t`.
+    /// Whether `t` lies before the front, so that all events at `t` have already been applied.
     pub(crate) fn is_before_front(&self, t: f64) -> bool {
         self.direction.is_some_and(|direction| (self.front.t - t) * direction > 0.0)
     }
 
-    /// Moves to a time in the last step, at most the front.
+    /// Moves to a time in the last step, at most the time of the front.
     pub(crate) fn stand_at(&mut self, t: f64) -> Result<(), SolveError> {
         if t != self.front.t && t != self.engine.time() {
             match self.engine.interpolate(t, 0) {
@@ -209,7 +210,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         }
     }
 
-    /// Checks output times and returns the last.
+    /// Checks the output times and returns the last of them.
     pub(crate) fn check_times(&self, times: &[f64]) -> Result<f64, InputError> {
         let &end = times.last().ok_or(InputError::NoTimes)?;
         for (i, &t) in times.iter().enumerate() {

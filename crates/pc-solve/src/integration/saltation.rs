@@ -6,42 +6,42 @@ use crate::error::{Reason, SolveError};
 use crate::integration::integration::Integration;
 use crate::integration::stepper::Stepper;
 
-/// A projection that moves the result of a reset by at most this, absolutely or relatively,
-/// whichever is larger, changes it by rounding errors only.
+/// A projection that moves the result of a reset by at most this much, absolutely or relatively,
+/// whichever is larger, changes it only by rounding errors.
 const OFF: f64 = 1e-8;
 
-/// A function whose rate along the motion is smaller than this fraction of the sum of its terms
-/// only touches zero.
+/// A function whose rate along the motion is smaller than this fraction of the sum of the rate's
+/// terms only touches zero.
 const GRAZING: f64 = 1e-9;
 
 /// Rates that differ by less than this fraction count as equal: the field has a corner there and
 /// does not jump.
 const SAME_RATES: f64 = 1e-12;
-/// The derivatives of the times at which surfaces are reached together count as equal if they
-/// differ by less than this.
+/// The derivatives of the times at which several surfaces are reached together count as equal if
+/// they differ by less than this.
 const SAME_SHIFTS: f64 = 1e-9;
 
 /// The slopes of the function of a surface.
 struct Slopes {
     by_time: f64,
     by_state: Vec<f64>,
-    /// The change along each column.
+    /// The change of the function along each column.
     changes: Vec<f64>,
 }
 
 impl<S: Stepper, E: Events> Integration<S, E> {
-    /// Computes S⁺ from S⁻ at an event at time t with the function g and the reset y⁺ = R(t, y⁻),
+    /// Computes S⁺ from S⁻ at an event at time t, with the function g and the reset y⁺ = R(t, y⁻),
     /// ```text
     /// s⁺ = R_y s⁻ + R_p + (R_t + R_y f⁻ − f⁺) τ,    τ = ∂tₑ/∂p = −(g_y s⁻ + g_p)/(g_t + g_y f⁻)
     /// ```
     /// with f⁻ = f(t, y⁻) and f⁺ = f(t, y⁺) [Hiskens, Pai, IEEE Trans. Circuits Syst. I 47 (2000)
     /// 204, eqs. (37)–(43)]. The derivatives with respect to parameters are those that the events
     /// provide; so are the derivatives with respect to (t, y) if the events [have
-    /// them](Events::has_derivatives), else these are central difference quotients along the
+    /// them](Events::has_derivatives); otherwise these are central difference quotients along the
     /// columns and along the motion.
     ///
-    /// An event that the reset of another one sets off occurs when that one does: `shifts`, once
-    /// known, are the τ of all resets at t, and the S⁺ of each is the S⁻ of the next.
+    /// An event that is set off by the reset of another event occurs at the same time: `shifts`,
+    /// once known, are the τ of all resets at t, and the S⁺ of each is the S⁻ of the next.
     pub(crate) fn jump_of_sensitivities(
         &mut self,
         event: usize,
@@ -85,7 +85,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 
     /// Continues from the front, where these surfaces of the field are reached; the derivatives
-    /// jump as at an event that resets nothing,
+    /// jump as they do at an event that resets nothing,
     /// ```text
     /// s⁺ = s⁻ + (f⁻ − f⁺) τ,    τ = −(g_y s⁻ + g_p)/(g_t + g_y f⁻)
     /// ```
@@ -122,8 +122,9 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 
     /// For each occurrence so far, the derivatives of its time with respect to the variable of each column of the
-    /// sensitivities, τ = −(g_y s⁻ + g_p)/(g_t + g_y f⁻). Empty without sensitivities; NaN if the events have no
-    /// derivatives with respect to [parameters](Events::by_parameter), and where their functions only touch zero.
+    /// sensitivities, τ = −(g_y s⁻ + g_p)/(g_t + g_y f⁻). The list is empty without sensitivities;
+    /// its entries are NaN if the events have no derivatives with respect to
+    /// [parameters](Events::by_parameter), and where the functions of the events only touch zero.
     pub fn time_derivatives(&self) -> &[Vec<f64>] {
         &self.time_derivatives
     }
@@ -167,7 +168,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 
     /// The derivative of the function of an event along the direction (1, v) or (0, v) in time and
-    /// state, and the size of its terms.
+    /// state, and the size of the terms of this derivative.
     fn function_along(
         &mut self,
         event: usize,
@@ -197,7 +198,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(((values[0] - values[1]) / (2.0 * step), size))
     }
 
-    /// The gradient (g_t, g_y) of each of these surfaces, and its g_y s⁻ + g_p for each column.
+    /// The gradient (g_t, g_y) of the function of each of these surfaces, and g_y s⁻ + g_p for each
+    /// column.
     fn slopes_of(
         &mut self,
         due: &[usize],
@@ -259,8 +261,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     /// ```text
     /// λ⁻ = R_yᵀ λ⁺ − κ g_y,    R_pᵀ λ⁺ − κ g_p,    κ = (λ⁺·(R_t + R_y f⁻ − f⁺) + δ)/(g_t + g_y f⁻)
     /// ```
-    /// where the density of G is larger by δ before the event than after it. This is S⁺ above,
-    /// multiplied by λ⁺ from the left.
+    /// where the density of G is larger by δ before the event than after it. This is the rule for
+    /// S⁺ above, multiplied by λ⁺ from the left.
     #[cfg(feature = "cvode")] // for the adjoint equations
     pub(crate) fn transposed_jump(
         &mut self,
@@ -302,8 +304,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 
     /// Whether the [projection](VectorField::project) of the field moves the result of the reset.
-    /// If not, the projection is not part of R: derivatives with respect to parameters that move
-    /// the surface point out of the surface, and must not be projected onto it.
+    /// If not, the projection is not part of R: the derivatives with respect to parameters that
+    /// move the surface have components out of the surface, and must not be projected onto it.
     fn is_projected(
         &mut self,
         event: usize,
@@ -316,7 +318,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(alone.iter().zip(after).any(|(a, b)| (a - b).abs() > OFF * b.abs().max(1.0)))
     }
 
-    /// The rates of a motion that starts at this state.
+    /// The rates of a motion that starts from this state.
     fn rates_of_start(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, SolveError> {
         if self.held.len() == 0 {
             return self.rates_at(t, state);
@@ -341,9 +343,9 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         }
     }
 
-    /// The derivative of g along the direction (1, v) or (0, v) in time and state, its size |g_t| +
-    /// Σ |g_yᵢ vᵢ| or an estimate of it, and the derivative of R along that direction, with or
-    /// without the projection of the field.
+    /// The derivative of g along the direction (1, v) or (0, v) in time and state, the size |g_t| +
+    /// Σ |g_yᵢ vᵢ| of its terms or an estimate of that size, and the derivative of R along that
+    /// direction, with or without the projection of the field.
     fn derivative_along(
         &mut self,
         event: usize,
@@ -381,7 +383,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok((quotient(values[0], values[1]), size, reset))
     }
 
-    /// The same, from the derivatives that the events provide.
+    /// The same, computed from the derivatives that the events provide.
     fn own_derivative_along(
         &mut self,
         event: usize,

@@ -1,11 +1,11 @@
-//! The sides of the surfaces on which a field of several pieces is held.
+//! The sides of its surfaces on which a field of several pieces is held.
 //!
 //! During a step the field is smooth: it is [held](pc_expr::Switching) on one side of each surface. Where a surface is
 //! reached the step ends, and the motion continues in the first of these ways that is consistent: across the surface, if
 //! f on the other side leads away from it; along it, if f leads back from both sides; or back to
-//! the side it came from, where it only touches the surface. Where several surfaces are reached at
-//! once, or the motion already slides along others, all combinations are tried, those in which it
-//! slides along fewer surfaces first.
+//! the side from which it came, where it only touches the surface. Where several surfaces are
+//! reached at once, or the motion already slides along others, all combinations are tried; those in
+//! which the motion slides along fewer surfaces come first.
 
 use pc_expr::{Events, Failure, Sliding, SlidingError, Switching, VectorField};
 
@@ -23,12 +23,13 @@ use crate::integration::stepper::Stepper;
 
 /// A function counts as being at zero if it is less than this fraction of the sum of its terms.
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
-/// The rate of a function counts as zero if it is less than this fraction of the sum of its terms.
+/// The rate of a function counts as zero if it is less than this fraction of the sum of the rate's
+/// terms.
 const FLAT: f64 = 1e-11;
 /// |σ| may exceed 1 by this where a motion begins to slide.
 const BEYOND: f64 = 1e-9;
 /// Up to this number of surfaces, all combinations are tried; if there are more, the sides are
-/// decided one after the other.
+/// decided one after another.
 const MOST_COMBINED: usize = 3;
 /// Fractions of the time scale of the motion at which a function that begins flat is evaluated.
 const AHEAD: [f64; 3] = [1e-5, 1e-3, 1e-2];
@@ -44,21 +45,22 @@ struct Place<'a> {
     direction: f64,
     /// The smallest significant size of a component.
     least: f64,
-    /// The longest time that matters.
+    /// The longest time span that matters.
     span: f64,
-    /// The functions of the surfaces there, with the field held on the sides before.
+    /// The functions of the surfaces at this place, with the field held on the sides that it had
+    /// before.
     before: Vec<f64>,
 }
 
-/// Whether sides are consistent with the motion that they lead to.
+/// Whether sides are consistent with the motion to which they lead.
 enum Verdict {
     Consistent,
-    /// The motion leaves this one of the open surfaces to another side.
+    /// The motion leaves this one of the open surfaces, to the given side.
     Left(usize, f64),
 }
 
 impl Place<'_> {
-    /// The functions and their rounding errors.
+    /// The functions of the surfaces, and their rounding errors.
     fn functions(&mut self, sides: &[f64]) -> (Vec<f64>, Vec<f64>) {
         self.field.hold(Some(sides));
         let mut values = vec![f64::NAN; sides.len()];
@@ -221,7 +223,7 @@ impl Place<'_> {
         Ok(y.iter().zip(&sum).map(|(y, sum)| y + h / 6.0 * sum).collect())
     }
 
-    /// The first consistent sides, if there are any.
+    /// The first sides that are consistent, if there are any.
     fn decide(&mut self, sides: &[f64], open: &Open) -> Result<Option<Vec<f64>>, Failure> {
         if open.len() > MOST_COMBINED {
             return self.decide_in_turn(sides, open);
@@ -246,9 +248,9 @@ impl Place<'_> {
         Ok(None)
     }
 
-    /// The same for many surfaces: the first surface that the motion leaves is assigned the side to
-    /// which the motion leaves it [Murty 1974]. The procedure ends if each surface acts on its own
-    /// function more than the others do.
+    /// The same for many surfaces: in each round, the first surface that the motion leaves is
+    /// assigned the side to which the motion leaves it [Murty 1974]. The procedure terminates if
+    /// each surface acts on its own function more strongly than the others do.
     fn decide_in_turn(&mut self, sides: &[f64], open: &Open) -> Result<Option<Vec<f64>>, Failure> {
         let mut tried = sides.to_vec();
         open.iter().for_each(|&(surface, _)| tried[surface] = 0.0);
@@ -293,7 +295,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.take_sides(decided, &open)
     }
 
-    /// Finds how the motion continues at the front where these surfaces are reached; returns what happened.
+    /// Finds how the motion continues at the front, where these surfaces are reached; returns what
+    /// happened.
     pub(crate) fn pass_surfaces(&mut self, due: &[usize]) -> Result<(), SolveError> {
         let (t, y, least) = (self.front.t, self.front_state.clone(), self.engine.least_size());
         let span = self.span_of_interest();
@@ -345,7 +348,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         Ok(())
     }
 
-    /// Whether the function of a surface that is reached jumps through zero, as it does at a break of a table.
+    /// Whether the function of a surface that is reached jumps through zero, as it may at a break
+    /// of a table.
     pub(crate) fn jumps(&self, surface: usize) -> bool {
         let noise = self.noise.get(self.events.events().len() + surface);
         noise.is_some_and(|noise| *noise == 0.0)
@@ -353,7 +357,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
 
     /// Decides the sides anew at a break of a table while the motion slides. The function of a
     /// surface may jump away from zero there, and the motion then continues beside this surface.
-    /// Along the other surfaces the rates jump, as those of the table do.
+    /// Along the other surfaces the rates jump, as the rates of the table do.
     pub(crate) fn leave_what_jumps(&mut self, towards: f64) -> Result<(), SolveError> {
         if !self.held.sides.contains(&0.0) {
             return Ok(());
@@ -426,12 +430,13 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         }
     }
 
-    /// The parts of the motion so far that slide along surfaces on which the field jumps.
+    /// The parts of the motion so far in which it slides along surfaces on which the field jumps.
     pub fn slides(&self) -> &[Slide] {
         &self.held.slides
     }
 
-    /// Holds the field on these sides permanently: no surface is looked for any more.
+    /// Holds the field on these sides permanently: from then on, the integration no longer looks
+    /// for surfaces.
     #[cfg(feature = "cvode")] // for the adjoint equations
     pub(crate) fn stay_on(&mut self, sides: &[f64]) {
         self.hold_on(sides);
@@ -443,7 +448,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         self.sides_before = self.sides.clone();
     }
 
-    /// The span of time of interest: up to the end, or of many steps like the last one.
+    /// The time span of interest: up to the end, or as long as many steps like the last one.
     fn span_of_interest(&self) -> f64 {
         let last = self.engine.last_step();
         match (self.engine.stop_time(), last.degree) {
@@ -497,5 +502,5 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 }
 
-/// The function of an open surface has jumped if it is larger than this.
+/// The magnitude above which the function of an open surface has jumped.
 const NEAR: f64 = 1e-6;

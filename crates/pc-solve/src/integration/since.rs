@@ -1,8 +1,8 @@
-//! A vector field whose time is counted from the start of the integration.
+//! A vector field whose time is measured from the start of the integration.
 //!
 //! Near t = 10⁹ the floating-point numbers are 10⁻⁷ apart: a step of 10⁻⁵ would have two digits.
 //! The methods therefore integrate with respect to s = t − t₀, so that steps and stages have all
-//! digits, and the field is evaluated at t₀ + s. For t₀ = 0 this is t to the last bit.
+//! their digits, and the field is evaluated at t₀ + s. For t₀ = 0, this sum is t to the last bit.
 
 use pc_expr::{
     Failure, LaneField, Pattern, RateJump, SteepFunctions, TaylorSeries, TimeDependence, VectorField,
@@ -15,7 +15,7 @@ use crate::error::NonFinite;
 pub(crate) struct Since<F> {
     pub(crate) field: F,
     origin: f64,
-    /// The times of the field's breaks since the origin; empty if the origin is 0.
+    /// The times of the field's breaks, measured from the origin; empty if the origin is 0.
     breaks: Vec<f64>,
 }
 
@@ -34,7 +34,7 @@ impl<F: VectorField> Since<F> {
         }
     }
 
-    /// The time t₀ + s; at a break it is the time of the break to the last bit.
+    /// The time t₀ + s; at a break, it is the time of the break to the last bit.
     pub(crate) fn time(&self, s: f64) -> f64 {
         if self.breaks.is_empty() {
             return self.origin + s;

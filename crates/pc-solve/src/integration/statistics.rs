@@ -1,66 +1,69 @@
 //! The work of an integration.
 
-/// Counts since the start, and the last internal step.
+/// Counts since the start, and data of the last internal step.
 ///
-/// Counts of a linear solver are 0 where it does not apply.
+/// The counts of a linear solver are 0 where no such solver is used.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct Statistics {
     /// Internal steps.
     pub steps: u64,
-    /// Evaluations of f, including those for difference quotients.
+    /// The number of evaluations of f, including those for difference quotients.
     pub rhs_evaluations: u64,
-    /// Evaluations of ∂f/∂y, by the field or by difference quotients.
+    /// The number of evaluations of ∂f/∂y, by the field or with difference quotients.
     pub jacobian_evaluations: u64,
-    /// Steps repeated because the estimated error was too large.
+    /// The number of steps repeated because the estimated error was too large.
     pub error_test_failures: u64,
-    /// Iterations of the nonlinear solver.
+    /// The number of iterations of the nonlinear solver.
     pub nonlinear_iterations: u64,
-    /// Failures of the nonlinear solver, including those remedied by a new Jacobian.
+    /// The number of failures of the nonlinear solver, including those remedied by a new Jacobian.
     pub nonlinear_failures: u64,
-    /// Steps repeated because the nonlinear solver failed.
+    /// The number of steps repeated because the nonlinear solver failed.
     pub step_failures: u64,
-    /// Set-ups of the linear solver: factorisations, or renewals of the preconditioner.
+    /// The number of set-ups of the linear solver: factorisations, or updates of the
+    /// preconditioner.
     pub linear_setups: u64,
-    /// Iterations of the Krylov solver.
+    /// The number of iterations of the Krylov solver.
     pub linear_iterations: u64,
-    /// Linear systems that were not solved: the Krylov solver missed its tolerance, or the matrix
-    /// proved singular.
+    /// The number of linear systems that were not solved: the Krylov solver missed its tolerance,
+    /// or the matrix proved singular.
     pub linear_failures: u64,
-    /// Products (∂f/∂y) v, by the field or by difference quotients.
+    /// The number of products (∂f/∂y) v, computed by the field or with difference quotients.
     pub jacobian_products: u64,
     /// How often the preconditioner was given a new ∂f/∂y.
     pub preconditioner_evaluations: u64,
-    /// Systems solved with the preconditioner.
+    /// The number of systems solved with the preconditioner.
     pub preconditioner_solves: u64,
-    /// Steps shortened to end where the explicit dependence on time has a feature that the motion
-    /// so far does not reveal: the beginning of a pulse, a jump.
+    /// The number of steps shortened to end where the explicit dependence on time has a feature
+    /// that the motion so far does not reveal, such as the beginning of a pulse, or a jump.
     pub limited_steps: u64,
-    /// Steps made with the stiff formulas of [`Auto`](crate::Method::Auto).
+    /// The number of steps made with the stiff formulas of [`Auto`](crate::Method::Auto).
     pub implicit_steps: u64,
-    /// Steps made in vector lanes together with other members of an [ensemble](crate::Ensemble).
+    /// The number of steps made in vector lanes together with other members of an
+    /// [ensemble](crate::Ensemble).
     pub lane_steps: u64,
-    /// Changes between the two methods of [`Auto`](crate::Method::Auto).
+    /// The number of switches between the two methods of [`Auto`](crate::Method::Auto).
     pub changes: u64,
     /// The time at which an explicit method first detected that stability rather than accuracy
     /// limits its steps, if it did.
     pub stiff_from: Option<f64>,
-    /// Order of the last step, 0 before the first.
+    /// The order of the last step; 0 before the first.
     pub last_order: u32,
-    /// Order of the next step, 0 before the first.
+    /// The order of the next step; 0 before the first.
     pub current_order: u32,
-    /// Length of the first step, with the sign of the direction; 0 before it.
+    /// The length of the first step, with the sign of the direction; 0 before that step.
     pub first_step: f64,
-    /// Length of the last step, with the sign of the direction; 0 before the first.
+    /// The length of the last step, with the sign of the direction; 0 before the first.
     pub last_step: f64,
-    /// Trial length of the next step, with the sign of the direction; 0 before the first.
+    /// The trial length of the next step, with the sign of the direction; 0 before the first.
     pub current_step: f64,
-    /// End of the last step.
+    /// The end of the last step.
     pub current_time: f64,
 }
 
 impl Statistics {
-    /// The sum of these statistics and those of an integration that continued from there.
+    /// The sum of these statistics and those of an integration that continued from where this one
+    /// ended.
     pub fn followed_by(&self, later: &Statistics) -> Statistics {
         Statistics {
             steps: self.steps.saturating_add(later.steps),

@@ -11,15 +11,16 @@ use crate::integration::integration::{Ending, Integration};
 use crate::integration::observer::{Observed, Observer};
 use crate::integration::stepper::Stepper;
 
-/// Receives the start and the end of a part of a motion with the states there, and the integration at that end.
+/// Receives the start and the end of a part of a motion, with the states at these two times, and
+/// the integration, which is at that end.
 pub(crate) type Piece<'a, I> =
     dyn FnMut(&mut I, (f64, &[f64]), (f64, &[f64])) -> Result<ControlFlow<()>, SolveError> + 'a;
 
 impl<S: Stepper, E: Events> Integration<S, E> {
-    /// Takes one step towards `towards`, possibly beyond it, or the part of a step before the next
-    /// event, and reports events at its end to `occurred`.
+    /// Takes one step towards `towards`, possibly beyond that time, or the part of a step before
+    /// the next event, and reports events at its end to `occurred`.
     ///
-    /// If the integration is inside such a step, it moves to the end of that step instead. The
+    /// If the integration is already inside a step, it moves to the end of that step instead. The
     /// state is then y⁺.
     ///
     /// # Errors
@@ -52,15 +53,16 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     ///
     /// # Errors
     /// [`InputError::NoStep`] before the first step and after a reset; [`InputError::OutsideStep`]
-    /// outside the last step, and beyond the next event; [`InputError::DerivativeOrder`] above the
-    /// degree; [`Reason::Projection`](crate::Reason::Projection).
+    /// outside the last step, and beyond the next event; [`InputError::DerivativeOrder`] for an
+    /// order above the degree; [`Reason::Projection`](crate::Reason::Projection).
     pub fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError> {
         self.engine.last_step().check_inside(t, order, self.front.t)?;
         self.engine.interpolate(t, order)
     }
 
-    /// Integrates to `end`, passes the motion to `segment`, one [`Segment`] for each step or part
-    /// of it between events, and reports events to `occurred` after the segment that ends there.
+    /// Integrates to `end`, passes the motion to `segment`, as one [`Segment`] for each step or
+    /// part of a step between events, and reports events to `occurred` after the segment that ends
+    /// at their time.
     ///
     /// Only the last step is held in memory.
     ///
@@ -78,8 +80,8 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         })
     }
 
-    /// The same; `piece` receives the start and the end of a segment with the states there, while
-    /// the integration is at its end.
+    /// The same; `piece` receives the start and the end of a segment, with the states at these two
+    /// times, while the integration is at that end.
     pub(crate) fn run_in_pieces(
         &mut self,
         end: f64,

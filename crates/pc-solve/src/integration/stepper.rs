@@ -9,9 +9,9 @@ use crate::integration::statistics::Statistics;
 
 /// A method that makes steps: the interface to [`Integration`](crate::Integration).
 ///
-/// A stepper knows the states along its last step and is at a [`time`](Stepper::time) in it. From
-/// these functions `Integration` builds outputs, events and their resets, dense output and
-/// checkpoints in the same way for every method.
+/// A stepper knows the states along its last step, and is at a [`time`](Stepper::time) in that
+/// step. From these functions `Integration` builds outputs, events and their resets, dense output
+/// and checkpoints in the same way for every method.
 ///
 /// ```
 /// use pc_solve::{FixedStep, Integration, RungeKutta4, from_fn};
@@ -28,7 +28,7 @@ pub trait Stepper {
     /// The vector field.
     fn field(&self) -> &Self::Field;
 
-    /// The vector field, between steps.
+    /// The vector field, mutable, between steps.
     fn field_mut(&mut self) -> &mut Self::Field;
 
     /// Ends the integration and returns the vector field.
@@ -53,7 +53,7 @@ pub trait Stepper {
     /// y at the end of the last step.
     fn end_state(&self) -> &[f64];
 
-    /// The current time, in the last step.
+    /// The current time, which lies in the last step.
     fn time(&self) -> f64;
 
     /// Moves to a time in the last step, at which derivatives and integrals, if there are any, will
@@ -75,8 +75,8 @@ pub trait Stepper {
     /// [`SolveError::Integration`]
     fn interpolate(&mut self, t: f64, order: u32) -> Result<&[f64], SolveError>;
 
-    /// The time in the last step about which its polynomial is expanded; the derivatives there are
-    /// the coefficients, up to factorials.
+    /// The time in the last step about which the polynomial of the step is expanded; the
+    /// derivatives there are the coefficients, up to factorials.
     fn centre(&self) -> f64 {
         self.last_step().end
     }
@@ -84,8 +84,8 @@ pub trait Stepper {
     /// Restarts from y(t) = y, validated by the caller, with these [columns](Stepper::columns);
     /// statistics continue.
     ///
-    /// If a direction is given, the next step must go in that direction; otherwise it may go either
-    /// way.
+    /// If a direction is given, the next step must go in that direction; otherwise it may go in
+    /// either direction.
     ///
     /// # Errors
     /// [`SolveError`] if this is not possible; the stepper is then unchanged.
@@ -97,8 +97,8 @@ pub trait Stepper {
         direction: Option<f64>,
     ) -> Result<(), SolveError>;
 
-    /// [Restarts](Stepper::restart) where the field changes to another piece and the state stays: the next step may be as
-    /// long as the last.
+    /// [Restarts](Stepper::restart) where the field changes to another piece while the state stays
+    /// the same: the next step may be as long as the last.
     ///
     /// # Errors
     /// As there.
@@ -112,7 +112,7 @@ pub trait Stepper {
         self.restart(t, y, columns, direction)
     }
 
-    /// A time beyond which the field is never evaluated.
+    /// The stop time, beyond which the field is never evaluated.
     fn stop_time(&self) -> Option<f64>;
 
     /// Sets the stop time, which the caller has validated, or removes it.
@@ -128,14 +128,14 @@ pub trait Stepper {
     fn tolerance(&self, i: usize, y: f64) -> f64;
 
     /// The smallest significant size of a component: values below the tolerances say nothing about
-    /// its scale.
+    /// the scale of the component.
     fn least_size(&self) -> f64;
 
     /// The derivatives integrated with the motion, at the current time, column-major; empty if
     /// there are none.
     ///
     /// # Errors
-    /// [`SolveError::Integration`] if they are not finite.
+    /// [`SolveError::Integration`] if these derivatives are not finite.
     fn columns(&self) -> Result<Vec<f64>, SolveError> {
         Ok(Vec::new())
     }
@@ -169,21 +169,22 @@ pub trait Stepper {
     }
 }
 
-/// The last step of a method, along which states are known.
+/// The last step of a method, along which the states are known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LastStep {
     /// Its start.
     pub start: f64,
-    /// Its end; before the first step, the start of the integration.
+    /// The end of the step; before the first step, the start of the integration.
     pub end: f64,
-    /// The degree of the polynomial of the states along it; none before the first step.
+    /// The degree of the polynomial that gives the states along the step; none before the first
+    /// step.
     pub degree: Option<u32>,
 }
 
 impl LastStep {
-    /// Checks that `t` lies between the start of the step and `end`, and that its polynomial has a
-    /// derivative of that order. As in CVODE, `t` may lie outside by rounding errors, up to 100 ε
-    /// times the time.
+    /// Checks that `t` lies between the start of the step and `end`, and that the polynomial of the
+    /// step has a derivative of that order. As in CVODE, `t` may lie outside by rounding errors, up
+    /// to 100 ε times the time.
     pub(crate) fn check_inside(&self, t: f64, order: u32, end: f64) -> Result<(), InputError> {
         finite("the time", t)?;
         let Some(highest) = self.degree else { return Err(InputError::NoStep) };

@@ -2,12 +2,12 @@
 
 use crate::integration::statistics::Statistics;
 
-/// The states of a motion at its output times, in the order they were reached.
+/// The states of a motion at its output times, in the order in which they were reached.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     dim: usize,
     times: Vec<f64>,
-    /// One state after the other.
+    /// One state after another.
     states: Vec<f64>,
     complete: bool,
     statistics: Statistics,
@@ -47,12 +47,12 @@ impl Trajectory {
         self.statistics = statistics;
     }
 
-    /// Number of components of a state.
+    /// The number of components of a state.
     pub fn dim(&self) -> usize {
         self.dim
     }
 
-    /// Number of outputs.
+    /// The number of outputs.
     pub fn len(&self) -> usize {
         self.times.len()
     }
@@ -70,12 +70,12 @@ impl Trajectory {
     /// The state at `times()[i]`, of length [`dim`](Trajectory::dim).
     ///
     /// # Panics
-    /// If `i` is not less than [`len`](Trajectory::len).
+    /// Panics if `i` is not less than [`len`](Trajectory::len).
     pub fn state(&self, i: usize) -> &[f64] {
         &self.states[i * self.dim..(i + 1) * self.dim]
     }
 
-    /// All states, one after the other: component j at `times()[i]` is `states()[i * dim + j]`.
+    /// All states, one after another: component j at `times()[i]` is `states()[i * dim + j]`.
     pub fn states(&self) -> &[f64] {
         &self.states
     }
@@ -83,7 +83,7 @@ impl Trajectory {
     /// Component `j` at each output time.
     ///
     /// # Panics
-    /// If `j` is not less than [`dim`](Trajectory::dim).
+    /// Panics if `j` is not less than [`dim`](Trajectory::dim).
     pub fn component(&self, j: usize) -> impl Iterator<Item = f64> {
         assert!(j < self.dim, "component {j} of {}", self.dim);
         self.iter().map(move |(_, y)| y[j])
@@ -104,7 +104,7 @@ impl Trajectory {
         self.complete
     }
 
-    /// The work done, including that beyond the last output if the integration failed or was
+    /// The work done, including the work beyond the last output if the integration failed or was
     /// stopped.
     pub fn statistics(&self) -> &Statistics {
         &self.statistics

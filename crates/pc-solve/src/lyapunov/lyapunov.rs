@@ -9,7 +9,7 @@ use crate::integration::integration::Integration;
 use crate::lyapunov::orthonormal::{length, orthonormalise};
 use crate::settings::options::Options;
 
-/// Options of the computation of Lyapunov exponents.
+/// Options for the computation of Lyapunov exponents.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LyapunovOptions {
     count: usize,
@@ -19,18 +19,18 @@ pub struct LyapunovOptions {
 }
 
 impl LyapunovOptions {
-    /// Options for the `count` largest exponents, computed over `intervals` intervals of time of
+    /// Options for the `count` largest exponents, computed over `intervals` time intervals of
     /// length `interval`.
     ///
-    /// The vectors are orthonormalised after each interval, which should be short enough for them
-    /// to stay distinct: the difference of the largest and the smallest exponent times `interval`
-    /// below about 10.
+    /// The vectors are orthonormalised after each interval, which should be short enough for the
+    /// vectors to stay distinct: the difference between the largest and the smallest exponent,
+    /// times `interval`, should be below about 10.
     pub fn new(count: usize, interval: f64, intervals: u32) -> Self {
         LyapunovOptions { count, interval, intervals, transient: 0 }
     }
 
     /// Sets the number of initial intervals that do not count, in which the motion approaches its
-    /// attractor and the vectors their directions; none by default.
+    /// attractor and the vectors turn to their final directions; none by default.
     pub fn transient(self, intervals: u32) -> Self {
         LyapunovOptions { transient: intervals, ..self }
     }
@@ -48,21 +48,21 @@ impl LyapunovOptions {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Lyapunov {
-    /// The exponents, one for each tangent vector, in inverse units of time.
+    /// The exponents, one for each tangent vector, in units of inverse time.
     pub exponents: Vec<f64>,
     /// The mean exponents up to the end of each interval, to see how they converge: entry
     /// `j + k * count` is exponent j after interval k.
     pub history: Vec<f64>,
     /// The end of the motion.
     pub time: f64,
-    /// The state there.
+    /// The state at the end of the motion.
     pub state: Vec<f64>,
 }
 
 /// The largest Lyapunov exponents of the motion from y(t0) = y0, forward in time.
 ///
 /// Tangent vectors v̇ = (∂f/∂y) v are integrated along the motion over an interval τ, starting from
-/// orthonormal ones, and are then orthonormalised again, V = QR. Then [Benettin, Galgani,
+/// orthonormal vectors, and are then orthonormalised again, V = QR. Then [Benettin, Galgani,
 /// Giorgilli, Strelcyn, Meccanica 15 (1980) 9]
 /// ```text
 /// λ_j = lim 1/(kτ) (ln R_jj⁽¹⁾ + … + ln R_jj⁽ᵏ⁾).
@@ -73,7 +73,7 @@ pub struct Lyapunov {
 ///
 /// Products with ∂f/∂y are computed as for [`Sensitivities`]; the vectors have to pass the error
 /// test with the tolerances of the state. The method restarts at each interval. The initial vectors
-/// are fixed, in generic directions.
+/// are fixed and have generic directions.
 ///
 /// ```
 /// use pc_solve::{LyapunovOptions, Options, from_fn, lyapunov_exponents};
@@ -92,7 +92,7 @@ pub struct Lyapunov {
 ///
 /// # Errors
 /// [`SolveError::Input`] if the problem or an option is invalid; [`SolveError::Integration`] if the
-/// motion fails, with [`Reason::Collapsed`] if intervals are too long for the vectors to stay
+/// motion fails, with [`Reason::Collapsed`] if the intervals are too long for the vectors to stay
 /// distinct.
 pub fn lyapunov_exponents<F: VectorField>(
     mut field: F,
@@ -121,8 +121,8 @@ pub fn lyapunov_exponents<F: VectorField>(
     Ok(Lyapunov { exponents, history, time, state })
 }
 
-/// Integrates the state and its tangent vectors from `time` to `end`, orthonormalises these, and
-/// returns the diagonal of R.
+/// Integrates the state and its tangent vectors from `time` to `end`, orthonormalises the vectors,
+/// and returns the diagonal of R.
 fn advance(
     field: &mut impl VectorField,
     options: &Options,

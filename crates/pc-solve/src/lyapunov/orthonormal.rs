@@ -5,8 +5,8 @@
 ///
 /// Uses modified Gram–Schmidt, twice for each column, so that the columns are orthogonal up to
 /// rounding error whatever their original angles [Giraud, Langou, Rozložník, van den Eshof, Numer.
-/// Math. 101 (2005) 87]. The diagonal is not negative; where it is zero or not finite the column is
-/// not a unit vector.
+/// Math. 101 (2005) 87]. The entries of the diagonal are not negative; where an entry is zero or
+/// not finite, the column is not a unit vector.
 pub(crate) fn orthonormalise(columns: &mut [f64], dim: usize) -> Vec<f64> {
     let mut diagonal = Vec::with_capacity(columns.len() / dim);
     for k in 0..columns.len() / dim {

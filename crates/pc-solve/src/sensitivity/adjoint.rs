@@ -8,8 +8,8 @@ use crate::sensitivity::adjoint_options::AdjointOptions;
 use crate::sensitivity::adjoint_pass;
 use crate::sensitivity::functional::{Functional, Gradient};
 
-/// The gradient with respect to y₀ and the parameters of a functional G of the motion from y(t0) =
-/// y0 to t1, which may be before t0.
+/// The gradient, with respect to y₀ and the parameters, of a functional G of the motion from y(t0)
+/// = y0 to t1, which may be before t0.
 ///
 /// With λ(t₁) = ∂h/∂y and
 /// ```text
@@ -19,20 +19,20 @@ use crate::sensitivity::functional::{Functional, Gradient};
 /// Petzold, Serban, SIAM J. Sci. Comput. 24 (2003) 1076]. The motion is integrated to t₁ and,
 /// during the backward integration, once again from each checkpoint to the next; states are read
 /// from the polynomials of the method. Each evaluation of λ̇ takes a [product](VectorField::vjp)
-/// with (∂f/∂y)ᵀ if the field computes these, else its Jacobian,
+/// with (∂f/∂y)ᵀ if the field computes such products, else its Jacobian,
 /// [sparse](VectorField::sparse_jacobian) if its [pattern](VectorField::sparsity) is known. A
 /// missing Jacobian is assembled from [products](VectorField::jvp) or from pairs of evaluations of
 /// f, one for each colour of the pattern or for each component.
 ///
-/// Memory is needed for the states at checkpoints, and for up to 13 vectors for each step of one
-/// [interval](AdjointOptions::checkpoint_interval) between them: for large systems, short intervals
-/// save memory.
+/// Memory is needed for the states at the checkpoints, and for up to 13 vectors for each step of
+/// one [interval](AdjointOptions::checkpoint_interval) between checkpoints: for large systems,
+/// short intervals save memory.
 ///
 /// Where states lie on a surface, λ follows the [projected](VectorField::project) motion, but is
-/// not projected itself: ∂G/∂y₀ is the gradient for starts in the whole space; its part tangent to
-/// the surface applies to starts on it. Where motions off the surface drift away from it, λ grows
-/// large in the directions across the surface, and its errors grow with it: choose smaller
-/// tolerances there.
+/// not projected itself: ∂G/∂y₀ is the gradient for initial states in the whole space; its part
+/// tangent to the surface applies to initial states on the surface. Where motions off the surface
+/// drift away from it, λ grows large in the directions across the surface, and the errors of λ grow
+/// with it: choose smaller tolerances in such cases.
 ///
 /// ```
 /// use pc_solve::{AdjointOptions, Failure, Functional, Options, adjoint_gradient, from_fn};
@@ -58,7 +58,8 @@ use crate::sensitivity::functional::{Functional, Gradient};
 ///
 /// # Errors
 /// [`SolveError::Input`] if the problem or an option is invalid; [`SolveError::Integration`] if the
-/// motion fails, with [`Reason::Adjoint`](crate::Reason::Adjoint) if the backward integration does.
+/// motion fails, with [`Reason::Adjoint`](crate::Reason::Adjoint) if the backward integration
+/// fails.
 pub fn adjoint_gradient<F: VectorField, G: Functional>(
     field: F,
     functional: G,
@@ -72,10 +73,10 @@ pub fn adjoint_gradient<F: VectorField, G: Functional>(
     first.ok_or_else(|| InputError::NoFunctional.into())
 }
 
-/// Like [`adjoint_gradient`], but for several functionals, [boxed](Box) if they are of several
-/// types: they share the forward motion, the checkpoints, and the motion between checkpoints, along
-/// which each has its own adjoint equations. Each gradient is the same as if its functional were
-/// the only one.
+/// Like [`adjoint_gradient`], but for several functionals, which are [boxed](Box) if they are of
+/// different types: they share the forward motion, the checkpoints, and the motion between
+/// checkpoints, along which each functional has its own adjoint equations. Each gradient is the
+/// same as if its functional were the only one.
 ///
 /// # Errors
 /// As for [`adjoint_gradient`]; [`InputError::NoFunctional`]
@@ -97,7 +98,7 @@ pub fn adjoint_gradients<F: VectorField, G: Functional>(
 /// ```
 /// and ∂G/∂p changes by R_pᵀ λ⁺ − κ γ_p: the transpose of the rule for
 /// [sensitivities](crate::Sensitivities). The [derivatives](Events::by_parameter) of the events
-/// with respect to parameters are needed if the field has such derivatives.
+/// with respect to the parameters are needed if the field has derivatives with respect to them.
 ///
 /// # Errors
 /// As for [`adjoint_gradients`]; [`Reason::EndsEarly`](crate::Reason::EndsEarly) at a terminal

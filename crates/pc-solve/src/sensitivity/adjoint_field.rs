@@ -13,10 +13,10 @@ use crate::sensitivity::motion_record::MotionRecord;
 use crate::sensitivity::transpose::Transpose;
 use crate::settings::options::Options;
 
-/// The data that the adjoint equations of all functionals of a motion share.
+/// The data shared by the adjoint equations of all functionals of a motion.
 pub(crate) struct Path<F> {
     pub(crate) field: F,
-    /// Computes ∂f/∂p for the derivatives with respect to parameters.
+    /// Computes ∂f/∂p, for the derivatives of the functional with respect to the parameters.
     linearisation: Linearisation,
     transpose: Transpose,
     motion: MotionRecord,
@@ -34,7 +34,7 @@ impl<F: VectorField> Path<F> {
         !self.transpose.has_entries(&self.field)
     }
 
-    /// Records the motion from y(t0) = y0 to `t1`, with the field held on these sides of its
+    /// Records the motion from y(t0) = y0 to `t1`, while the field is held on these sides of its
     /// surfaces.
     pub(crate) fn record(
         &mut self,
@@ -49,8 +49,8 @@ impl<F: VectorField> Path<F> {
     }
 }
 
-/// λ̇ = −(∂f/∂y)ᵀ λ − ∂g/∂y along the recorded piece of a motion, with the integrals of the
-/// gradient.
+/// The field λ̇ = −(∂f/∂y)ᵀ λ − ∂g/∂y along the recorded piece of a motion, together with the
+/// integrals in the gradient.
 pub(crate) struct AdjointField<F, G> {
     path: Rc<RefCell<Path<F>>>,
     functional: G,
@@ -98,7 +98,7 @@ impl<F: VectorField, G: Functional> AdjointField<F, G> {
         &self.state
     }
 
-    /// h(t, y), and its derivatives with respect to the state and the parameters.
+    /// The end term h(t, y), and its derivatives with respect to the state and the parameters.
     pub(crate) fn end(&mut self, t: f64, y: &[f64]) -> Result<(f64, Vec<f64>, Vec<f64>), Failure> {
         self.state.copy_from_slice(y);
         let value = self.term(Term::End, t)?;
@@ -199,8 +199,8 @@ impl<F: VectorField, G: Functional> VectorField for AdjointField<F, G> {
     }
 }
 
-/// The integrals, which are zero at the end of the motion and become ∫ (∂g/∂p + (∂f/∂p)ᵀ λ) dt and
-/// ∫ g dt at its start.
+/// The integrals, which are zero at the end of the motion and reach ∫ (∂g/∂p + (∂f/∂p)ᵀ λ) dt and ∫
+/// g dt at its start.
 impl<F: VectorField, G: Functional> Quadratures for AdjointField<F, G> {
     fn count(&self) -> usize {
         self.by_parameters.len() + 1

@@ -1,4 +1,4 @@
-//! Options of the integration of a motion and its adjoint equations.
+//! Options for the integration of a motion and its adjoint equations.
 
 use crate::cvode::linear::krylov::Krylov;
 use crate::cvode::linear::solver::LinearSolver;
@@ -8,10 +8,10 @@ use crate::settings::nonlinear_solver::NonlinearSolver;
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
-/// Default dimension of the Krylov subspaces for the adjoint equations.
+/// The default dimension of the Krylov subspaces for the adjoint equations.
 const SUBSPACE: u32 = 30;
 
-/// Options of the integration of a motion and its adjoint equations.
+/// Options for the integration of a motion and its adjoint equations.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AdjointOptions {
     pub(crate) motion: Options,
@@ -22,9 +22,9 @@ pub struct AdjointOptions {
 }
 
 impl AdjointOptions {
-    /// These options for the motion; for the adjoint equations the same method, the same tolerances
-    /// (the smallest of the absolute ones) and the same limit on steps; a checkpoint every 200
-    /// steps.
+    /// These options for the motion; for the adjoint equations, the same method, the same
+    /// tolerances (the smallest of the absolute ones) and the same limit on steps; and a checkpoint
+    /// every 200 steps.
     pub fn new(motion: Options) -> Self {
         let absolute_tolerance = match &motion.absolute_tolerance {
             Tolerance::Scalar(atol) => *atol,
@@ -41,7 +41,7 @@ impl AdjointOptions {
     }
 
     /// Sets the relative and absolute tolerance of λ, of the integrals of g and of the integrals in
-    /// ∂G/∂p, positive.
+    /// ∂G/∂p; both are positive.
     pub fn tolerances(self, relative: f64, absolute: f64) -> Self {
         AdjointOptions { relative_tolerance: relative, absolute_tolerance: absolute, ..self }
     }
@@ -56,15 +56,15 @@ impl AdjointOptions {
     }
 
     /// Sets how the linear systems of the adjoint equations are solved, whose matrices are the
-    /// transposes of those of the motion; by default the [usual](LinearSolver) solver for the
-    /// field, or [Krylov's method](LinearSolver::Krylov) if it offers only
+    /// transposes of those of the motion; by default with the [usual](LinearSolver) solver for the
+    /// field, or with [Krylov's method](LinearSolver::Krylov) if the field offers only
     /// [products](pc_expr::VectorField::vjp).
     pub fn linear_solver(self, linear_solver: LinearSolver) -> Self {
         AdjointOptions { linear_solver: Some(linear_solver), ..self }
     }
 
-    /// The options for the adjoint equations of a field with entries of its Jacobian, or
-    /// `products_only`.
+    /// The options for the adjoint equations of a field that gives the entries of its Jacobian or,
+    /// with `products_only`, only products.
     pub(crate) fn back(&self, products_only: bool) -> Options {
         let Options { method, max_steps, .. } = self.motion;
         let (deadline, nonlinear_solver) = (self.motion.deadline.clone(), self.motion.iteration());

@@ -31,9 +31,9 @@ struct Mark {
 
 /// What makes λ jump.
 enum Jump {
-    /// A reset: the event and the state before it.
+    /// A reset: the event, and the state before the event.
     Reset(usize, Vec<f64>),
-    /// Surfaces on which f jumps: these and the sides before.
+    /// Surfaces on which f jumps: the surfaces, and the sides before the jump.
     Surfaces(Vec<usize>, Vec<f64>),
 }
 
@@ -195,7 +195,7 @@ fn there<F: VectorField, E: Events>(
     Ok(There { marks, has_jumps, end, statistics })
 }
 
-/// Adds marks where surfaces are crossed, and the sides from each mark on.
+/// Adds marks where surfaces are crossed, and sets the sides from each mark on.
 fn with_passages(marks: &mut Vec<Mark>, passages: Vec<Passage>, direction: f64) {
     for Passage { surfaces, time, state, before, after } in passages {
         let place = marks.partition_point(|mark| (mark.t - time) * direction < 0.0);
@@ -212,7 +212,7 @@ fn with_passages(marks: &mut Vec<Mark>, passages: Vec<Passage>, direction: f64) 
     }
 }
 
-/// The equations of one functional, and λ.
+/// The adjoint equations of one functional, and λ.
 type Paused<F, G> = (AdjointField<F, G>, Vec<f64>);
 
 /// The backward integration for one functional.
@@ -220,7 +220,7 @@ struct Way<F, G> {
     back: Option<Integration<Cvode<AdjointField<F, G>>>>,
     options: Options,
     tolerances: (f64, f64),
-    /// The end term h, and the integrals beyond the last jump.
+    /// The end term h plus the integrals beyond the last jump.
     value: f64,
     by_parameters: Vec<f64>,
 }
@@ -337,7 +337,7 @@ fn stopped(reason: Reason, (time, state): (f64, &[f64]), failure: Option<Failure
     SolveError::Integration(Box::new(IntegrationError { reason, time, state: state.to_vec(), failure }))
 }
 
-/// An error of the adjoint equations, with the state of the motion where they stopped.
+/// An error in the adjoint equations, with the state of the motion where their integration stopped.
 fn of_motion<F: VectorField, G: Functional>(
     error: SolveError,
     adjoint: &mut AdjointField<F, G>,

@@ -1,7 +1,7 @@
-//! Derivatives of a motion that an explicit method integrates with it.
+//! Derivatives of a motion that an explicit method integrates along with it.
 //!
-//! The state of the method is (y, s₁, s₂, …), with the equations of variation for the columns; from
-//! outside, the state is y alone.
+//! The state of the method is (y, s₁, s₂, …), with the equations of variation for the columns; seen
+//! from outside, the state is y alone.
 
 use pc_expr::{
     Failure, Method, PolynomialMotion, SteepFunctions, Switching, TaylorSeries, TimeDependence, VectorField,
@@ -84,7 +84,8 @@ impl<F: VectorField> VectorField for WithVariation<F> {
         self.field.enter(t, end)
     }
 
-    /// The surfaces are those of y; the integration evaluates their functions with y alone.
+    /// The surfaces are those of the field for y; the integration evaluates their functions with y
+    /// alone.
     fn switching(&mut self) -> Option<&mut dyn Switching> {
         self.field.switching()
     }
@@ -106,7 +107,7 @@ pub(crate) struct Explicit<S> {
     parameters: Vec<Option<usize>>,
     dim: usize,
     relative_tolerance: f64,
-    /// The state at the time inside the last step that is being read, and the columns there.
+    /// The state and the columns at the time, inside the last step, that is being read.
     state: Vec<f64>,
     inside: Option<Vec<f64>>,
     /// The columns at the start of the last step.
@@ -115,7 +116,7 @@ pub(crate) struct Explicit<S> {
 
 impl<F: VectorField, S: Stepper<Field = WithVariation<F>>> Explicit<S> {
     /// Starts an integration at y(t0) = y0 that also computes derivatives of the motion, using the
-    /// method that `begin` constructs from the field, the start and the options.
+    /// method that `begin` constructs from the field, the initial state and the options.
     ///
     /// # Errors
     /// As for `begin`; [`SolveError::Input`] if a column needs a derivative that the field does not have.
@@ -159,7 +160,7 @@ impl<F: VectorField, S: Stepper<Field = WithVariation<F>>> Explicit<S> {
         Ok(Explicit { method, parameters, dim, relative_tolerance, state: all, inside: None, start: columns })
     }
 
-    /// Reads the columns at the current time, if that lies inside the last step.
+    /// Reads the columns at the current time, if this time lies inside the last step.
     fn read_columns(&mut self, t: f64) {
         let LastStep { start, end, degree } = self.method.last_step();
         self.inside = None;
@@ -308,7 +309,7 @@ impl<F: VectorField, S: Stepper<Field = WithVariation<F>>> Stepper for Explicit<
 }
 
 impl<F: VectorField, S: Stepper<Field = WithVariation<F>>> Explicit<S> {
-    /// The same error, reduced to the state of the motion alone.
+    /// The same error, with its state reduced to that of the motion alone.
     fn of_state(&self, error: SolveError) -> SolveError {
         match error {
             SolveError::Integration(mut error) => {
@@ -320,10 +321,11 @@ impl<F: VectorField, S: Stepper<Field = WithVariation<F>>> Explicit<S> {
     }
 }
 
-/// The method that options choose for a motion with its derivatives.
+/// The method chosen in the options for a motion with its derivatives.
 #[derive(Debug)]
 pub(crate) enum Differentiated<F: VectorField> {
-    /// For [`Method::Adams`] and [`Method::Bdf`]; also for [`Method::Auto`], with Adams' formulas.
+    /// CVODES: for [`Method::Adams`] and [`Method::Bdf`]; also for [`Method::Auto`], with Adams'
+    /// formulas.
     Cvode(Box<Cvode<F>>),
     /// [`Method::Dop853`].
     Dop853(Box<Explicit<Dop853<WithVariation<F>>>>),
@@ -332,7 +334,7 @@ pub(crate) enum Differentiated<F: VectorField> {
 }
 
 impl<F: VectorField> Differentiated<F> {
-    /// Starts at y(t0) = y0 with derivatives of the motion.
+    /// Starts at y(t0) = y0, and integrates derivatives of the motion too.
     ///
     /// # Errors
     /// As for [`Cvode::with_sensitivities`](crate::Cvode::with_sensitivities), [`Dop853::new`] and [`Taylor::new`].
@@ -360,7 +362,7 @@ impl<F: VectorField> Differentiated<F> {
     }
 }
 
-/// The method that options choose, with sensitivities.
+/// The method chosen in the options, with sensitivities.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Differentiating<'a> {
     pub(crate) options: &'a Options,

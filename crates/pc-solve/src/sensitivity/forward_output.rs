@@ -16,7 +16,8 @@ use crate::integration::stepper::Stepper;
 use crate::settings::options::Options;
 
 impl<F: VectorField> Integration<Cvode<F>> {
-    /// Starts at y(t0) = y0 as [`new`](Integration::new) does, with derivatives of the motion.
+    /// Starts at y(t0) = y0 as [`new`](Integration::new) does, and integrates derivatives of the
+    /// motion too.
     ///
     /// # Errors
     /// As for [`Cvode::with_sensitivities`].
@@ -33,8 +34,8 @@ impl<F: VectorField> Integration<Cvode<F>> {
 
 /// Access to the derivatives, for methods that have them.
 impl<S: Stepper, E: Events> Integration<S, E> {
-    /// S at [`time`](Integration::time), S⁺ at an event: entry `i + j * dim` is the derivative of
-    /// component i for column j.
+    /// The matrix S at [`time`](Integration::time), which is S⁺ at an event: entry `i + j * dim` is
+    /// the derivative of component i for column j.
     ///
     /// Empty unless the integration was begun [with
     /// sensitivities](Integration::with_sensitivities).
@@ -47,7 +48,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
 
     /// Restarts from y(t) = y as [`restart`](Integration::restart) does, with these columns of S.
     ///
-    /// At a jump that depends on the state, S jumps too.
+    /// If the state jumps by an amount that depends on the state, S jumps too.
     ///
     /// # Errors
     /// As for [`restart`](Integration::restart); [`SolveError::Input`] unless `matrix` is finite
@@ -86,7 +87,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     }
 }
 
-/// Access to what only CVODES has.
+/// Access to what only CVODES provides.
 impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
     /// The work for the sensitivities so far.
     pub fn sensitivity_statistics(&self) -> SensitivityStatistics {
@@ -94,20 +95,22 @@ impl<F: VectorField, E: Events> Integration<Cvode<F>, E> {
     }
 
     /// The derivative of S of the given order at `t` in the last step, column-major, as
-    /// [`interpolate`](Integration::interpolate) for y.
+    /// [`interpolate`](Integration::interpolate) gives for y.
     ///
     /// # Errors
-    /// As there; [`InputError::NoSensitivities`] if there are none.
+    /// As for [`interpolate`](Integration::interpolate); [`InputError::NoSensitivities`] if there
+    /// are no sensitivities.
     pub fn interpolate_sensitivities(&mut self, t: f64, order: u32) -> Result<Vec<f64>, SolveError> {
         self.engine.last_step().check_inside(t, order, self.front.t)?;
         self.engine.sensitivities_by_time(t, order)?.ok_or_else(|| InputError::NoSensitivities.into())
     }
 
-    /// Like [`run_dense`](Integration::run_dense), but also passes on the segment of S on the same
-    /// span, from S⁺ to S⁻, whose components are the entries of S, column-major.
+    /// Like [`run_dense`](Integration::run_dense), but also passes on a segment of S over the same
+    /// span, from S⁺ to S⁻; its components are the entries of S, column-major.
     ///
     /// # Errors
-    /// As there; [`InputError::NoSensitivities`] if there are none.
+    /// As for [`run_dense`](Integration::run_dense); [`InputError::NoSensitivities`] if there are
+    /// no sensitivities.
     pub fn run_dense_with_sensitivities(
         &mut self,
         end: f64,

@@ -8,8 +8,9 @@ use crate::integration::statistics::Statistics;
 /// derivatives.
 ///
 /// Both terms write their derivatives with respect to the state and the parameters of the field;
-/// the latter are empty if the field has no [derivatives](pc_expr::VectorField::parameter_jacobian)
-/// with respect to them. Every entry must be written, zeros too. A term not implemented is zero.
+/// the derivatives with respect to the parameters are empty if the field does not provide [such
+/// derivatives](pc_expr::VectorField::parameter_jacobian). Every entry must be written, including
+/// zeros. A term that is not implemented is zero.
 pub trait Functional {
     /// g(t, y), with ∂g/∂y and ∂g/∂p.
     ///
@@ -71,13 +72,13 @@ impl<G: Functional + ?Sized> Functional for Box<G> {
 pub struct Gradient {
     /// G
     pub value: f64,
-    /// ∂G/∂y₀, one for each component of the field.
+    /// The derivatives ∂G/∂y₀, one for each component of the field.
     pub by_start: Vec<f64>,
-    /// ∂G/∂p for a start that does not depend on p, one for each parameter; empty if the field has
-    /// no derivatives with respect to them.
+    /// The derivatives ∂G/∂p for an initial state that does not depend on p, one for each
+    /// parameter; empty if the field does not provide derivatives with respect to its parameters.
     ///
-    /// If the start does depend on p, add (∂y₀/∂p)ᵀ ∂G/∂y₀.
+    /// If the initial state does depend on p, add (∂y₀/∂p)ᵀ ∂G/∂y₀.
     pub by_parameters: Vec<f64>,
-    /// The work of the forward integration to t₁ only.
+    /// The work of the forward integration to t₁ alone.
     pub statistics: Statistics,
 }

@@ -6,7 +6,7 @@ use crate::error::SolveError;
 use crate::integration::integration::Integration;
 use crate::settings::options::Options;
 
-/// The polynomials of the method over the steps of a piece of a motion.
+/// The polynomials of the method for the steps of a piece of a motion.
 #[derive(Debug, Default)]
 pub(crate) struct MotionRecord {
     dim: usize,
@@ -21,8 +21,8 @@ pub(crate) struct MotionRecord {
 }
 
 impl MotionRecord {
-    /// Integrates from y(t0) = y0 to `t1`, without evaluating the field beyond it, with the field
-    /// held on these sides of its surfaces.
+    /// Integrates from y(t0) = y0 to `t1`, without evaluating the field beyond `t1`, while the
+    /// field is held on these sides of its surfaces.
     pub(crate) fn of(
         field: &mut impl VectorField,
         t0: f64,

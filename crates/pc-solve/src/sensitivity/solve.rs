@@ -19,7 +19,7 @@ use crate::settings::options::Options;
 use crate::solve::failure::SolveFailure;
 use crate::solve::solve::Solve;
 
-/// A motion to be integrated with its derivatives; [`Solve::sensitivities`] makes it.
+/// A motion to be integrated together with its derivatives; [`Solve::sensitivities`] makes it.
 #[derive(Debug, Clone)]
 #[must_use]
 pub struct SolveSensitivities<'a, F, E> {
@@ -32,8 +32,8 @@ pub struct SolveSensitivities<'a, F, E> {
 }
 
 impl<'a, F: VectorField, M: Borrow<Options>, E: Events> Solve<'a, F, M, E> {
-    /// Adds the integration of S = ∂y/∂(p, y₀), which jumps at resets as [their
-    /// derivatives](Events::by_parameter) require.
+    /// Adds the integration of S = ∂y/∂(p, y₀), which jumps at resets as the [derivatives of the
+    /// resets](Events::by_parameter) require.
     ///
     /// ```
     /// use pc_solve::{Sensitivities, Solve, from_fn};
@@ -54,7 +54,8 @@ impl<F: VectorField, E: Events> SolveSensitivities<'_, F, E> {
     /// The states and derivatives at `times`, and the occurrences of events.
     ///
     /// # Errors
-    /// [`SolveFailure`] with what was reached before the failure; nothing if the input is invalid.
+    /// [`SolveFailure`] with what was reached before the failure, which is nothing if the input is
+    /// invalid.
     pub fn run(self, times: &[f64]) -> Result<SensitivitySolution, Box<SolveFailure<SensitivitySolution>>> {
         self.run_observed(times, |_, _| ControlFlow::Continue(()))
     }
@@ -99,10 +100,11 @@ impl<F: VectorField, E: Events> SolveSensitivities<'_, F, E> {
         }
     }
 
-    /// The motion to `end` and S as functions of time; the entries of S are column-major.
+    /// The motion up to `end`, and S, as functions of time; the entries of S are column-major.
     ///
     /// # Errors
-    /// As for [`Integration::run_dense_with_sensitivities`], which also gives what was reached.
+    /// As for [`Integration::run_dense_with_sensitivities`], which also gives what was reached
+    /// before a failure.
     pub fn dense(self, end: f64) -> Result<(DenseOutput, DenseOutput), SolveError> {
         let (mut motion, mut matrix) = (DenseOutput::default(), DenseOutput::default());
         let SolveSensitivities { field, t0, y0, options, events, sensitivities } = self;
@@ -130,13 +132,13 @@ impl<F: VectorField, E: Events> SolveSensitivities<'_, F, E> {
     }
 }
 
-/// Options that do not evaluate the field beyond the end.
+/// Options with which the field is not evaluated beyond the end.
 fn towards(mut options: Options, end: Option<f64>) -> Options {
     options.stop_time = options.stop_time.or(end.filter(|t| t.is_finite()));
     options
 }
 
-/// A motion to be integrated with its derivatives from checkpoint to checkpoint;
+/// A motion to be integrated together with its derivatives from checkpoint to checkpoint;
 /// [`Resumable::sensitivities`] makes it.
 #[derive(Debug)]
 #[must_use]
@@ -146,8 +148,8 @@ pub struct ResumableSensitivities<'a, P> {
 }
 
 impl<P, M: Borrow<Options>> Resumable<P, M> {
-    /// Adds the integration of S = ∂y/∂(p, y₀). A checkpoint contains the S at its time and at the
-    /// outputs before it.
+    /// Adds the integration of S = ∂y/∂(p, y₀). A checkpoint contains S at the time of the
+    /// checkpoint and at the outputs before it.
     pub fn sensitivities(self, sensitivities: &Sensitivities) -> ResumableSensitivities<'_, P> {
         let options = self.method.borrow().clone();
         ResumableSensitivities { motion: self.method(options), sensitivities }
@@ -158,8 +160,8 @@ impl<P> ResumableSensitivities<'_, P> {
     /// Like [`Resumable::run`]. Derivatives of the times of events are not recorded.
     ///
     /// # Errors
-    /// As there; [`InputError::Sensitivities`](crate::InputError::Sensitivities) if the checkpoint has another number of
-    /// columns.
+    /// As for [`Resumable::run`]; [`InputError::Sensitivities`](crate::InputError::Sensitivities)
+    /// if the checkpoint has a different number of columns.
     pub fn run<F: VectorField, E: Events>(
         self,
         times: &[f64],

@@ -11,7 +11,7 @@ use crate::integration::trajectory::Trajectory;
 pub struct SensitivityTrajectory {
     motion: Trajectory,
     columns: usize,
-    /// One matrix after the other.
+    /// One matrix after another.
     matrices: Vec<f64>,
 }
 
@@ -20,7 +20,7 @@ impl SensitivityTrajectory {
         SensitivityTrajectory { motion: Trajectory::new(dim), columns, matrices: Vec::new() }
     }
 
-    /// The trajectory of this motion, with one matrix after the other.
+    /// The trajectory of this motion, with one matrix after another.
     pub(super) fn of(motion: Trajectory, columns: usize, matrices: Vec<f64>) -> Self {
         SensitivityTrajectory { motion, columns, matrices }
     }
@@ -39,7 +39,7 @@ impl SensitivityTrajectory {
         &self.motion
     }
 
-    /// Number of columns of S.
+    /// The number of columns of S.
     pub fn columns(&self) -> usize {
         self.columns
     }
@@ -48,7 +48,7 @@ impl SensitivityTrajectory {
     /// of component k for column j.
     ///
     /// # Panics
-    /// If `i` is not less than the number of outputs.
+    /// Panics if `i` is not less than the number of outputs.
     pub fn matrix(&self, i: usize) -> &[f64] {
         let len = self.motion.dim() * self.columns;
         &self.matrices[i * len..(i + 1) * len]
@@ -57,7 +57,7 @@ impl SensitivityTrajectory {
     /// Column `j` of S at output time `i`.
     ///
     /// # Panics
-    /// If there is no such output or column.
+    /// Panics if there is no such output or column.
     pub fn column(&self, i: usize, j: usize) -> &[f64] {
         assert!(j < self.columns, "column {j} of {}", self.columns);
         let dim = self.motion.dim();
@@ -73,16 +73,16 @@ impl SensitivityTrajectory {
 /// A motion with events, and its derivatives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SensitivitySolution {
-    /// The states and S at the output times, y⁺ and S⁺ at events; a terminal event is the last
-    /// output.
+    /// The states and S at the output times, which are y⁺ and S⁺ at events; a terminal event is the
+    /// last output.
     pub trajectory: SensitivityTrajectory,
-    /// The occurrences, in order.
+    /// The occurrences of events, in order.
     pub occurrences: Vec<Occurrence>,
-    /// For each occurrence the [derivatives of its time](Integration::time_derivatives), one for
+    /// For each occurrence, the [derivatives of its time](Integration::time_derivatives), one for
     /// each column; not recorded for motions with checkpoints.
     pub time_derivatives: Vec<Vec<f64>>,
-    /// How it ended; none if it failed.
+    /// How the integration ended; none if it failed.
     pub ending: Option<Ending>,
-    /// The parts that slide along surfaces on which the field jumps.
+    /// The parts of the motion that slide along surfaces on which the field jumps.
     pub slides: Vec<Slide>,
 }

@@ -6,8 +6,9 @@ use crate::cvode::forward::linearisation::Linearisation;
 use crate::error::NonFinite;
 use crate::settings::options::Options;
 
-/// (∂f/∂y)ᵀ of a field, from the products that the field computes, else from its sparse Jacobian,
-/// which may be assembled from products for the colours of its pattern, else from its dense one.
+/// The matrix (∂f/∂y)ᵀ of a field, from the products that the field computes, else from its sparse
+/// Jacobian, which may be assembled from products for the colours of its pattern, else from its
+/// dense Jacobian.
 #[derive(Debug)]
 pub(crate) struct Transpose {
     linearisation: Linearisation,
@@ -15,7 +16,7 @@ pub(crate) struct Transpose {
     sparse: Option<Sparse>,
 }
 
-/// The entries of a ∂f/∂y whose pattern is known.
+/// The entries of a matrix ∂f/∂y whose pattern is known.
 #[derive(Debug)]
 struct Sparse {
     pattern: Pattern,
@@ -135,7 +136,7 @@ impl Transpose {
         Ok(())
     }
 
-    /// Writes all of −(∂f/∂y)ᵀ, column-major.
+    /// Writes all entries of −(∂f/∂y)ᵀ, column-major.
     pub(crate) fn negative(
         &mut self,
         field: &mut impl VectorField,
@@ -160,8 +161,8 @@ impl Transpose {
         Ok(())
     }
 
-    /// Writes the entries of −(∂f/∂y)ᵀ in the order of its [pattern](Transpose::pattern); nothing
-    /// if that is unknown.
+    /// Writes the entries of −(∂f/∂y)ᵀ in the order of its [pattern](Transpose::pattern); writes
+    /// nothing if the pattern is unknown.
     pub(crate) fn negative_entries(
         &mut self,
         field: &mut impl VectorField,

@@ -5,10 +5,11 @@ use std::fmt;
 /// A condition on a component of y at the end of every step, so that f is not evaluated far outside
 /// its domain.
 ///
-/// If the end of a step violates it, the state is corrected if the violation is small; otherwise
-/// the step is repeated with a shorter length. Inside a step the polynomial of the method may
-/// violate it by the tolerance. Where the motion itself leaves the allowed region, the steps become
-/// ever shorter, until the limit of steps or the minimum step ends the integration.
+/// If the state at the end of a step violates the condition slightly, the state is corrected;
+/// otherwise the step is repeated with a shorter length. Inside a step, the polynomial of the
+/// method may violate the condition by up to the tolerance. Where the motion itself leaves the
+/// allowed region, the steps become ever shorter, until the limit on steps or the minimum step ends
+/// the integration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Inequality {
     /// No condition.
@@ -24,7 +25,7 @@ pub enum Inequality {
 }
 
 impl Inequality {
-    /// Whether `value` satisfies it.
+    /// Whether `value` satisfies the inequality.
     pub fn holds(self, value: f64) -> bool {
         match self {
             Inequality::Free => true,
@@ -37,7 +38,7 @@ impl Inequality {
 }
 
 impl fmt::Display for Inequality {
-    /// What the component must be: `zero or positive`.
+    /// What the component must be, for example `zero or positive`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Inequality::Free => "any number",

@@ -5,7 +5,7 @@
 pub enum NonlinearSolver {
     /// Newton's iteration, with a [`LinearSolver`](crate::LinearSolver).
     Newton,
-    /// Fixed-point iteration, which needs no matrix, but in a stiff system converges only for small
-    /// steps.
+    /// Fixed-point iteration, which needs no matrix, but converges only for small steps if the
+    /// system is stiff.
     FixedPoint,
 }

@@ -16,8 +16,8 @@ use crate::settings::tolerance::Tolerance;
 ///
 /// A step is accepted if the root mean square of eᵢ/(rtol |yᵢ| + atolᵢ) over the components is at
 /// most 1, where e is the estimated local error. [`Method::Taylor`] chooses its step beforehand, so
-/// that the largest of these quotients, taken for the terms left out of its series, is about 1.
-/// Values are checked when an integration starts.
+/// that the largest of these quotients, with the terms left out of its series as e, is about 1.
+/// The values are checked when an integration starts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     pub(crate) method: Method,
@@ -48,8 +48,8 @@ impl Default for Options {
 }
 
 impl Options {
-    /// A method with tolerances 1e-9 (relative) and 1e-12 (absolute), at most 500 000 steps between
-    /// outputs, Newton's iteration for BDF and the fixed-point iteration for Adams.
+    /// Options for a method with tolerances 1e-9 (relative) and 1e-12 (absolute), at most 500 000
+    /// steps between outputs, Newton's iteration for BDF and fixed-point iteration for Adams.
     pub fn new(method: Method) -> Self {
         Options {
             method,
@@ -71,82 +71,85 @@ impl Options {
         }
     }
 
-    /// How the implicit equation of a step is solved.
+    /// Sets how the implicit equation of a step is solved.
     pub fn nonlinear_solver(self, nonlinear_solver: NonlinearSolver) -> Self {
         Options { nonlinear_solver: Some(nonlinear_solver), ..self }
     }
 
     #[cfg(feature = "cvode")]
-    /// How the linear systems of Newton's iteration are solved; the [default](LinearSolver) depends
-    /// on the field's dimension and zero pattern.
+    /// Sets how the linear systems of Newton's iteration are solved; the [default](LinearSolver)
+    /// depends on the field's dimension and zero pattern.
     pub fn linear_solver(self, linear_solver: LinearSolver) -> Self {
         Options { linear_solver: Some(linear_solver), ..self }
     }
 
-    /// Inequalities to satisfy, one for each component; none by default.
+    /// Sets the inequalities to be satisfied, one for each component; there are none by default.
     ///
-    /// They cannot be combined with a field [with a
+    /// Inequalities cannot be combined with a field [that has a
     /// projection](pc_expr::VectorField::has_projection), which would move the states again.
     pub fn inequalities(self, inequalities: Vec<Inequality>) -> Self {
         Options { inequalities, ..self }
     }
 
-    /// Relative tolerance, positive. Below ε = 2.2e-16 it is taken as ε, or 2 ε for Adams' and BDF
-    /// formulas; only Taylor's method, which carries the rounding error of the state along,
-    /// supports smaller tolerances.
+    /// Sets the relative tolerance, which is positive. A tolerance below ε = 2.2e-16 is taken as ε,
+    /// or as 2 ε for Adams' and BDF formulas; only Taylor's method, which carries the rounding
+    /// error of the state along, supports smaller tolerances.
     pub fn relative_tolerance(self, relative_tolerance: f64) -> Self {
         Options { relative_tolerance, ..self }
     }
 
-    /// Absolute tolerance, positive: a number, or a `Vec` of one for each component.
+    /// Sets the absolute tolerance, which is positive: one number, or a `Vec` with a number for
+    /// each component.
     pub fn absolute_tolerance(self, absolute_tolerance: impl Into<Tolerance>) -> Self {
         Options { absolute_tolerance: absolute_tolerance.into(), ..self }
     }
 
-    /// Maximum number of internal steps from one output to the next, at least 1; exceeding it is
-    /// the error [`Code::TooMuchWork`](crate::Code::TooMuchWork).
+    /// Sets the maximum number of internal steps from one output to the next, at least 1; exceeding
+    /// it is the error [`Code::TooMuchWork`](crate::Code::TooMuchWork).
     pub fn max_steps(self, max_steps: u64) -> Self {
         Options { max_steps, ..self }
     }
 
-    /// Length of the first step, positive in both directions of time; estimated by default.
+    /// Sets the length of the first step, which is positive in both directions of time; by default
+    /// it is estimated.
     pub fn initial_step(self, length: f64) -> Self {
         Options { initial_step: Some(length), ..self }
     }
 
-    /// Minimum length of a step, positive in both directions of time.
+    /// Sets the minimum length of a step, which is positive in both directions of time.
     pub fn min_step(self, length: f64) -> Self {
         Options { min_step: Some(length), ..self }
     }
 
-    /// Maximum length of a step, positive in both directions of time.
+    /// Sets the maximum length of a step, which is positive in both directions of time.
     pub fn max_step(self, length: f64) -> Self {
         Options { max_step: Some(length), ..self }
     }
 
-    /// Highest order to use, from 1 to [`Method::highest_order`].
+    /// Sets the highest order to be used, from 1 to [`Method::highest_order`].
     pub fn max_order(self, order: u32) -> Self {
         Options { max_order: Some(order), ..self }
     }
 
-    /// A time beyond which the vector field is never evaluated.
+    /// Sets a time beyond which the vector field is never evaluated.
     pub fn stop_time(self, t: f64) -> Self {
         Options { stop_time: Some(t), ..self }
     }
 
-    /// The number of equal parts of each internal step at whose ends event functions are sampled,
-    /// if they are not programs of the state; at least 1, by default 4. Between two samples [an
-    /// even number](crate::Integration) of their zeros may be missed.
+    /// Sets the number of equal parts of each internal step at whose ends event functions are
+    /// sampled if they are not programs of the state; at least 1, by default 4. Between two samples
+    /// [an even number](crate::Integration) of their zeros may be missed.
     pub fn samples_per_step(self, parts: u32) -> Self {
         Options { samples_per_step: parts, ..self }
     }
 
-    /// When occurrences of an event count as accumulated, which is an error.
+    /// Sets when occurrences of an event count as accumulated, which is an error.
     pub fn accumulation(self, accumulation: Accumulation) -> Self {
         Options { accumulation, ..self }
     }
 
-    /// The time after which no further step begins; passing it is [an error](crate::Reason::Ended).
+    /// Sets the time after which no further step begins; passing this deadline is [an
+    /// error](crate::Reason::Ended).
     pub fn deadline(self, deadline: Deadline) -> Self {
         Options { deadline: Some(deadline), ..self }
     }
@@ -177,7 +180,7 @@ impl Options {
         })
     }
 
-    /// Checks that the choices exist for the method.
+    /// Checks that the method supports the choices made.
     fn check_explicit(&self) -> Result<(), InputError> {
         #[cfg(feature = "cvode")]
         let linear = self.linear_solver.is_some();
@@ -194,8 +197,8 @@ impl Options {
     }
 
     /// The relative tolerance for methods whose states are rounded: at least ε, since a smaller
-    /// error does not show, and steps shortened to reach it only add rounding errors. CVODES needs
-    /// twice that.
+    /// error would not show, and steps shortened to reach it would only add rounding errors. CVODES
+    /// needs at least 2 ε.
     pub(crate) fn resolved_tolerance(&self) -> f64 {
         let least = match self.method {
             Method::Adams | Method::Bdf => 2.0 * f64::EPSILON,

@@ -1,16 +1,16 @@
 //! Absolute tolerances.
 
-/// Absolute tolerance: a single one for all components, or one for each.
+/// The absolute tolerance: a single number for all components, or one number for each.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Tolerance {
-    /// The same for all components.
+    /// The same tolerance for all components.
     Scalar(f64),
-    /// One for each component, in order.
+    /// One tolerance for each component, in order.
     Vector(Vec<f64>),
 }
 
 impl Tolerance {
-    /// The tolerances of the components, reduced to a single one if they are all equal.
+    /// The tolerances of the components, reduced to a single tolerance if they are all equal.
     pub fn each(tolerances: Vec<f64>) -> Tolerance {
         match tolerances.split_first() {
             Some((first, rest)) if rest.iter().all(|other| other == first) => Tolerance::Scalar(*first),

@@ -1,4 +1,4 @@
-//! Failures of an integration, with the part of the motion that was reached before.
+//! Failures of an integration, with the part of the motion that was reached before the failure.
 
 use std::error::Error;
 use std::fmt;
@@ -6,8 +6,8 @@ use std::fmt;
 use crate::error::SolveError;
 use crate::integration::trajectory::Trajectory;
 
-/// A failed integration, for example by [`solve`](crate::solve()), with the part of the motion that
-/// it had reached.
+/// A failed integration, for example one by [`solve`](crate::solve()), with the part of the motion
+/// that it had reached.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct SolveFailure<R = Trajectory> {

@@ -13,7 +13,7 @@ use crate::settings::options::Options;
 use crate::solve::failure::SolveFailure;
 use crate::solve::solve::Solve;
 
-/// A motion to be integrated with integrals along it; [`Solve::integrals`] makes it.
+/// A motion to be integrated together with integrals along it; [`Solve::integrals`] makes it.
 #[derive(Debug)]
 #[must_use]
 pub struct SolveIntegrals<'a, F> {

@@ -8,14 +8,14 @@ use crate::integration::trajectory::Trajectory;
 /// The part of a motion that was integrated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solution {
-    /// The states at the output times, y⁺ at events; a terminal event is the last output.
+    /// The states at the output times, which are y⁺ at events; a terminal event is the last output.
     pub trajectory: Trajectory,
-    /// The occurrences, in order.
+    /// The occurrences of events, in order.
     pub occurrences: Vec<Occurrence>,
-    /// How it ended; none if it failed.
+    /// How the integration ended; none if it failed.
     pub ending: Option<Ending>,
-    /// The parts that slide along surfaces on which the field jumps; not recorded for motions with
-    /// checkpoints.
+    /// The parts of the motion that slide along surfaces on which the field jumps; not recorded for
+    /// motions with checkpoints.
     pub slides: Vec<Slide>,
 }
 

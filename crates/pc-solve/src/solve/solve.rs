@@ -18,12 +18,13 @@ use crate::solve::solution::Solution;
 /// Integrates ẏ = f(t, y) from y(t0) = y0 with the method of the options and returns the states at
 /// `times`; [`Solve`] offers more choices.
 ///
-/// `y0` has one number per component. The times are monotonic, forwards or backwards; the
+/// `y0` has one number for each component. The times are monotonic, forwards or backwards; the
 /// first may be t0. The vector field is not evaluated beyond the last time, nor beyond the stop
 /// time of the options.
 ///
 /// # Errors
-/// [`SolveFailure`] with the outputs reached before the failure; none if the input is invalid.
+/// [`SolveFailure`] with the outputs reached before the failure, of which there are none if the
+/// input is invalid.
 pub fn solve<F: VectorField>(
     field: F,
     t0: f64,
@@ -37,7 +38,7 @@ pub fn solve<F: VectorField>(
     }
 }
 
-/// A motion to be integrated: ẏ = f(t, y) from y(t0) = y0, by a method, with events.
+/// A motion to be integrated: ẏ = f(t, y) from y(t0) = y0, with a method and events.
 ///
 /// ```
 /// use pc_solve::{Event, FnEvents, Options, Solve, from_fn};
@@ -71,13 +72,13 @@ impl<'a, F: VectorField> Solve<'a, F> {
 }
 
 impl<'a, F: VectorField, M, E> Solve<'a, F, M, E> {
-    /// Sets the method: [`Options`] choose one of those built in.
+    /// Sets the method; [`Options`] choose one of the built-in methods.
     pub fn method<N: IntegrationMethod<F>>(self, method: N) -> Solve<'a, F, N, E> {
         let Solve { field, t0, y0, events, .. } = self;
         Solve { field, t0, y0, method, events }
     }
 
-    /// Adds these events.
+    /// Adds these events to the motion.
     pub fn events<D: Events>(self, events: D) -> Solve<'a, F, M, D> {
         let Solve { field, t0, y0, method, .. } = self;
         Solve { field, t0, y0, method, events }
@@ -101,18 +102,19 @@ impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
     /// The states at `times`, and the occurrences of events.
     ///
     /// The times are monotonic, forwards or backwards; the first may be t0. The vector field is not
-    /// evaluated beyond the last, nor beyond the stop time of the method.
+    /// evaluated beyond the last time, nor beyond the stop time of the method.
     ///
     /// # Errors
-    /// [`SolveFailure`] with what was reached before the failure; nothing if the input is invalid.
+    /// [`SolveFailure`] with what was reached before the failure, which is nothing if the input is
+    /// invalid.
     pub fn run(self, times: &[f64]) -> Result<Solution, Box<SolveFailure<Solution>>> {
         self.run_observed(times, |_, _| ControlFlow::Continue(()))
     }
 
-    /// Like [`run`](Solve::run), but passes the end (t, y⁻) of each step, or of the part of it
+    /// Like [`run`](Solve::run), but passes the end (t, y⁻) of each step, or of the part of a step
     /// before an event, to `step`, to show progress or to stop.
     ///
-    /// If stopped, the solution has the outputs before that step and is not
+    /// If the integration is stopped, the solution has the outputs before that step and is not
     /// [complete](Trajectory::is_complete).
     ///
     /// # Errors
@@ -150,7 +152,8 @@ impl<F: VectorField, M: IntegrationMethod<F>, E: Events> Solve<'_, F, M, E> {
     }
 
     /// Like [`run_observed`](Solve::run_observed), but passes each (t, y) to `output`, which may
-    /// stop it, instead of keeping it: the trajectory of the solution contains only the statistics.
+    /// stop the integration, instead of keeping the states: the trajectory of the solution contains
+    /// only the statistics.
     ///
     /// # Errors
     /// As for [`run`](Solve::run).

@@ -1,5 +1,5 @@
-//! Corners and jumps of a field: the branch on which a series holds, given by the signs of branch
-//! functions.
+//! Corners and jumps of a field: the branch on which a series is valid, given by the signs of
+//! branch functions.
 
 use pc_expr::VectorField;
 
@@ -13,8 +13,8 @@ use crate::taylor::stepper::Taylor;
 const TOGETHER: f64 = 1e-12;
 
 impl<F: VectorField> Taylor<F> {
-    /// Expands the motion in a series at the end of the last step, on the sides that it enters from
-    /// there.
+    /// Expands the motion in a series at the end of the last step, on the sides that the motion
+    /// enters from there.
     pub(super) fn expand_at_end(&mut self, direction: f64) -> Result<(), SolveError> {
         self.direction = direction;
         self.sides.fill(0.0);
@@ -45,7 +45,7 @@ impl<F: VectorField> Taylor<F> {
         leading.map_or(0.0, f64::signum)
     }
 
-    /// The time within h at which branch functions first change sign, and which of them do.
+    /// The time within h at which any branch functions first change sign, and which of them do.
     pub(super) fn corner(&self, h: f64) -> Option<(f64, Vec<usize>)> {
         let mut first = None::<f64>;
         let mut exits = Vec::new();
@@ -67,7 +67,7 @@ impl<F: VectorField> Taylor<F> {
         Some((end, exits.iter().filter(|exit| together(exit)).map(|&(i, _)| i).collect()))
     }
 
-    /// The length on which the series of the branch functions hold.
+    /// The length over which the series of the branch functions are valid.
     pub(super) fn branch_length(&self) -> f64 {
         let order = self.branch_series.order();
         let mut length = f64::INFINITY;
@@ -82,7 +82,7 @@ impl<F: VectorField> Taylor<F> {
         length
     }
 
-    /// Changes to the other side of these branch functions at the start of the step.
+    /// Switches to the other side of these branch functions at the start of the step.
     pub(super) fn turn(&mut self, which: &[usize], direction: f64) -> Result<(), SolveError> {
         for &i in which {
             self.sides[i] = -self.sides[i];
@@ -99,7 +99,7 @@ impl<F: VectorField> Taylor<F> {
         }
     }
 
-    /// Whether a branch function at zero returns from the side it has entered.
+    /// Whether a branch function at zero turns back from the side it has entered.
     pub(super) fn returns(&self, i: usize, direction: f64) -> bool {
         self.branch_series.order() >= 1 && self.branch_series.of_order(1)[i] * direction * self.sides[i] < 0.0
     }

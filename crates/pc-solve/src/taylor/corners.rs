@@ -2,16 +2,17 @@
 
 /// The resolution, as a fraction of a step.
 const RESOLVED: f64 = 1e-14;
-/// A function counts as beginning at zero if its initial value is below this fraction of its
-/// largest term.
+/// A function counts as beginning at zero if its initial value is below this fraction of the
+/// largest term of its series.
 const AT_ZERO: f64 = 1e-13;
 
-/// The first s in [0, length] at which the polynomial with these coefficients leaves `side`; it
-/// begins on that side, or at zero up to rounding error. None if it stays there.
+/// The first s in [0, length] at which the polynomial with these coefficients leaves `side`; the
+/// polynomial begins on that side, or at zero up to rounding error. None if the polynomial stays on
+/// that side.
 ///
 /// On an interval around m with coefficients d_k there, |p(s) − d_0| ≤ Σ |d_k| rᵏ: where that is
 /// less than |d_0| there is no root, and where Σ k |d_k| rᵏ⁻¹, k ≥ 2, is less than |d_1| there is
-/// at most one. Other intervals are halved.
+/// at most one. All other intervals are halved.
 pub(super) fn first_exit(coefficients: &[f64], side: f64, length: f64) -> Option<f64> {
     // In units of the step.
     let mut scaled: Vec<f64> = coefficients.to_vec();
@@ -70,8 +71,8 @@ fn value(terms: &[f64], s: f64) -> f64 {
     terms.iter().rev().fold(0.0, |sum, c| sum * s + c)
 }
 
-/// A point in [a, b] that lies at most a few rounding errors beyond the zero through which the
-/// polynomial falls.
+/// A point in [a, b] that lies at most a few rounding errors beyond the zero at which the
+/// polynomial becomes negative.
 fn bisected(terms: &[f64], (mut a, mut b): (f64, f64)) -> f64 {
     while b - a > 4.0 * f64::EPSILON * b {
         let middle = 0.5 * (a + b);

@@ -1,4 +1,4 @@
-//! Examination of the field further ahead, which a series does not show.
+//! Examination of the field farther ahead, where a series shows nothing.
 //!
 //! The coefficients of the series of exp(−((t − 5)/0.2)²) at t = 0 are indistinguishable from 0. At
 //! the [times](crate::foresight) in the next step at which the field may turn or jump, the rates of
@@ -13,7 +13,7 @@ use crate::integration::stepper::Stepper;
 use crate::taylor::stepper::Taylor;
 
 impl<F: VectorField> Taylor<F> {
-    /// A shorter length for the step, if f has a feature in the step that the series does not show.
+    /// A shorter length for the step, if f has a feature in it that the series does not show.
     pub(super) fn foreseen(&mut self, h: f64, end: f64) -> Result<Option<f64>, SolveError> {
         let t = self.start;
         let ahead = Ahead { t, reach: t + h, end, given: false };

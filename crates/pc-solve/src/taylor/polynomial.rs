@@ -1,7 +1,7 @@
 //! The polynomial of a step.
 
-/// The polynomial y(t₀ + s) = Σ_k c_k sᵏ; the coefficients are stored with c_0 first, each as long
-/// as the state.
+/// The polynomial y(t₀ + s) = Σ_k c_k sᵏ; the coefficients, each as long as the state, are stored
+/// with c_0 first.
 #[derive(Debug, Clone)]
 pub(super) struct Polynomial {
     pub(super) coefficients: Vec<f64>,

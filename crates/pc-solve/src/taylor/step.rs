@@ -7,7 +7,8 @@ use crate::integration::breaks::next_break;
 use crate::integration::stepper::Stepper;
 use crate::taylor::stepper::Taylor;
 
-/// A step that would end less than this fraction of its length before a stop time or a break ends there.
+/// A step that would end just before a stop time or a break, by less than this fraction of its
+/// length, is made to end there.
 const NEAR: f64 = 1e-9;
 /// A step is at most this many times as long as the previous step or as the time to its target,
 /// whichever is longer.
@@ -58,8 +59,8 @@ impl<F: VectorField> Taylor<F> {
         Ok(if length.is_infinite() { wanted } else { length.min(FARTHEST * known) })
     }
 
-    /// Makes a step along the series; returns the time at its end as a number and its rounding
-    /// error, to be added to it.
+    /// Makes a step along the series; returns the time at its end as a number, and the rounding
+    /// error to be added to that number.
     pub(super) fn find_step(
         &mut self,
         towards: f64,
@@ -202,7 +203,7 @@ impl<F: VectorField> Taylor<F> {
         if self.ahead.is_finite() { Ok(()) } else { Err(refused(self.blame(t))) }
     }
 
-    /// The failure to report for a series that is not finite.
+    /// The failure to be reported for a series that is not finite.
     #[cold]
     pub(super) fn blame(&mut self, t: f64) -> Failure {
         if let Err(failure) = self.field.rhs(t, self.ahead.of_order(0), &mut self.rates) {

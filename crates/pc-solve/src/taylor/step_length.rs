@@ -7,17 +7,17 @@ use crate::taylor::polynomial::Polynomial;
 
 /// The range of orders that are chosen automatically.
 const ORDERS: std::ops::RangeInclusive<usize> = 6..=40;
-/// The smallest useful tolerance: a smaller one gains nothing.
+/// The smallest useful tolerance: a smaller one would gain nothing.
 const TIGHTEST: f64 = 1e-20;
 /// Changes of the state over a step that are below this fraction of the state are treated as
 /// rounding errors.
 const ROUNDING: f64 = 1e-15;
-/// So are differences of rates that are below this fraction of the rates: cancellation in f leaves
-/// an error of some hundred roundings.
+/// So are differences between rates that are below this fraction of the rates: cancellation in f
+/// leaves an error of about a hundred rounding errors.
 const ROUNDING_OF_RATES: f64 = 1e-13;
 /// The rates at the end of a step may differ from those of the polynomial by this many times the
-/// contribution of the first neglected term: coefficients scatter, and tolerances hold only in
-/// order of magnitude.
+/// contribution of the first neglected term: the coefficients scatter, and tolerances are met only
+/// to an order of magnitude.
 const DEFECT: f64 = 100.0;
 
 /// rtol |yᵢ| + atolᵢ
@@ -72,8 +72,8 @@ impl Tolerances {
         c.iter().zip(y).enumerate().map(inverse).fold(0.0, f64::max)
     }
 
-    /// The order p, at most `highest`, with the least work per time: cost(p)/h(p) with h = ρ
-    /// tol^{1/(p+1)}, ρ the same for all p.
+    /// The order p, at most `highest`, with the least work per unit of time: cost(p)/h(p) with h =
+    /// ρ tol^{1/(p+1)}, and ρ the same for all p.
     pub(super) fn order(&self, [a, b, c]: [f64; 3], highest: Option<u32>) -> usize {
         let highest = highest.map_or(*ORDERS.end(), |highest| (highest as usize).max(2));
         let work = |p: usize| {

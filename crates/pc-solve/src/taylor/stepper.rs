@@ -31,26 +31,27 @@ pub struct Taylor<F> {
     pub(super) min_step: f64,
     pub(super) max_step: f64,
     pub(super) stop_time: Option<f64>,
-    /// The time at the start of the last step, with its rounding error, and the series there.
+    /// The time at the start of the last step, with its rounding error, and the series at that
+    /// time.
     pub(super) start: f64,
     pub(super) start_low: f64,
     pub(super) series: Polynomial,
-    /// The same at the end of the last step.
+    /// The same data at the end of the last step.
     pub(super) end: f64,
     pub(super) end_low: f64,
     pub(super) ahead: Polynomial,
     /// The series of the previous step, while a step is made.
     pub(super) before: Polynomial,
-    /// The rounding error of the state at the end.
+    /// The rounding error of the state at the end of the last step.
     pub(super) low: Vec<f64>,
     pub(super) next_low: Vec<f64>,
-    /// The signs of the branch functions at the end, their names and their series.
+    /// The signs of the branch functions at the end of the last step, their names and their series.
     pub(super) sides: Vec<f64>,
     pub(super) branches: Vec<String>,
     pub(super) branch_series: Polynomial,
     /// Whether no step has been made since the start.
     pub(super) begins: bool,
-    /// The direction of time in which `ahead` holds; 0 if it is not expanded.
+    /// The direction of time in which `ahead` is valid; 0 if it has not been expanded.
     pub(super) direction: f64,
     pub(super) time: f64,
     pub(super) places: Places,
@@ -62,12 +63,12 @@ pub struct Taylor<F> {
 
 impl<F: VectorField> Taylor<F> {
     /// Starts at y(t0) = y0, one number per component, with the tolerances, step lengths,
-    /// highest order and limits of the options; their method is ignored.
+    /// highest order and limits of the options; the method they choose is ignored.
     ///
     /// # Errors
     /// [`SolveError::Input`] unless all inputs are finite, of matching lengths and in their ranges;
-    /// [`InputError::Explicit`](crate::InputError::Explicit) if they choose how implicit equations
-    /// are solved; [`Reason::Rates`] if the field has no [series](VectorField::series).
+    /// [`InputError::Explicit`](crate::InputError::Explicit) if the options choose how implicit
+    /// equations are solved; [`Reason::Rates`] if the field has no [series](VectorField::series).
     pub fn new(mut field: F, t0: f64, y0: &[f64], options: &Options) -> Result<Self, SolveError> {
         check_start(&field, t0, y0)?;
         Options { method: Method::Taylor, ..options.clone() }.validate(y0.len())?;

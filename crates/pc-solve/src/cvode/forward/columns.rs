@@ -7,11 +7,11 @@ use crate::cvode::handles::{NonlinearIteration, Vector};
 
 /// The data of the sensitivities of an integration.
 pub(crate) struct Forward {
-    /// Kept alive because CVODES refers to it.
+    /// The nonlinear solver, kept alive because CVODES refers to it.
     pub(super) _nonlinear_iteration: NonlinearIteration,
     /// Room for the columns, written by CVODES.
     pub(crate) columns: Vec<Vector>,
-    /// S at the last start, column-major.
+    /// S at the last start or restart, column-major.
     pub(super) matrix: Vec<f64>,
     pub(super) correction: Correction,
     /// The work before the last restart.

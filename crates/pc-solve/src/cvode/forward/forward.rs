@@ -17,7 +17,8 @@ use crate::settings::nonlinear_solver::NonlinearSolver;
 use crate::settings::options::Options;
 
 impl<F: VectorField> Cvode<F> {
-    /// Starts at y(t0) = y0 as [`new`](Cvode::new) does, with derivatives of the motion.
+    /// Starts at y(t0) = y0 as [`new`](Cvode::new) does, and integrates derivatives of the motion
+    /// too.
     ///
     /// # Errors
     /// As for [`new`](Cvode::new); [`SolveError::Input`] if a column needs a derivative that the
@@ -34,7 +35,8 @@ impl<F: VectorField> Cvode<F> {
         Cvode::new(field, t0, y0, options)?.and_sensitivities(sensitivities, options, start)
     }
 
-    /// Adds columns that begin at `start` to this integration, which has not begun.
+    /// Adds columns, whose initial values are `start`, to this integration, which has not yet
+    /// begun.
     pub(crate) fn and_sensitivities(
         mut self,
         sensitivities: &Sensitivities,
@@ -136,7 +138,7 @@ impl<F: VectorField> Cvode<F> {
     }
 
     /// Reinitialises the columns of S, if there are any, once the state has been reinitialised;
-    /// `work` is the work done before.
+    /// `work` is the work done so far.
     pub(crate) fn begin_columns_anew(
         &mut self,
         matrix: &[f64],

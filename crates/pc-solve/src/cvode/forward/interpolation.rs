@@ -14,8 +14,8 @@ impl<F: VectorField> Cvode<F> {
         self.sensitivities_by_time(t, 0)
     }
 
-    /// The derivative of S of that order at `t` in the last step, column-major; none before the
-    /// first step.
+    /// The derivative of S of the given order at `t` in the last step, column-major; none before
+    /// the first step.
     pub(crate) fn sensitivities_by_time(&self, t: f64, order: u32) -> Result<Option<Vec<f64>>, SolveError> {
         let Some(forward) = self.sensitivity.as_ref().filter(|_| self.direction.is_some() && !self.restarted)
         else {

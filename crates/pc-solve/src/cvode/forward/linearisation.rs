@@ -9,9 +9,9 @@ use crate::settings::tolerance::Tolerance;
 /// How products (∂f/∂y) v are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Products {
-    /// The field computes them.
+    /// The field computes the products.
     Field,
-    /// They are formed with the ∂f/∂y that the field writes.
+    /// The products are formed with the ∂f/∂y that the field writes.
     Jacobian,
     /// (f(t, y + σv) − f(t, y − σv))/2σ
     #[default]
@@ -20,9 +20,10 @@ enum Products {
 
 /// ∂f/∂y and ∂f/∂p of a field, and products with them.
 ///
-/// Products are computed by the field if it can, else with its Jacobian, else as central difference
-/// quotients. The relative error of a quotient is about ε^(2/3) = 4e-11 if σ|v| is ε^(1/3) times
-/// the size of the state, where truncation and rounding errors are about equal. That size is max
+/// Products are computed by the field if it can do so, else with its Jacobian, else as central
+/// difference quotients. The relative error of a quotient is about ε^(2/3) = 4e-11 if σ|v| is
+/// ε^(1/3) times the size of the state, where truncation and rounding errors are about equal. The
+/// size of the state is max
 /// |yᵢ|, but at least atol/rtol, the smallest significant size.
 #[derive(Debug, Default)]
 pub(crate) struct Linearisation {
@@ -185,7 +186,7 @@ impl Linearisation {
         Ok(())
     }
 
-    /// ∂f/∂p, column-major, of a field that has it.
+    /// ∂f/∂p, column-major, of a field that provides it.
     pub(crate) fn parameter_jacobian(
         &mut self,
         field: &mut impl VectorField,
@@ -207,7 +208,8 @@ impl Linearisation {
         }
     }
 
-    /// ∂f/∂pⱼ where [`parameter_jacobian`](Linearisation::parameter_jacobian) was evaluated last.
+    /// ∂f/∂pⱼ at the state at which [`parameter_jacobian`](Linearisation::parameter_jacobian) was
+    /// last evaluated.
     pub(crate) fn by_parameter(&self, j: usize) -> &[f64] {
         &self.by_parameters[j * self.dim..(j + 1) * self.dim]
     }

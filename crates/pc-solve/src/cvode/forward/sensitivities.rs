@@ -1,4 +1,4 @@
-//! Derivatives of a motion that are integrated with it.
+//! Derivatives of a motion that are integrated along with it.
 
 use pc_expr::VectorField;
 
@@ -14,14 +14,14 @@ use crate::integration::checks::{check_length, finite, positive};
 /// ṡ = (∂f/∂y) s + ∂f/∂pⱼ,    s(t₀) = ∂y₀/∂pⱼ.
 /// ```
 /// Columns are in the order in which they are added. Products with ∂f/∂y are [computed by the
-/// field](VectorField::jvp) if it can, else with its [Jacobian](VectorField::jacobian), else as
-/// difference quotients, accurate to about ten digits. Derivatives with respect to parameters need
-/// the field's [`parameter_jacobian`](VectorField::parameter_jacobian).
+/// field](VectorField::jvp) if it can do so, else with its [Jacobian](VectorField::jacobian), else
+/// as difference quotients, accurate to about ten digits. Derivatives with respect to parameters
+/// need the field's [`parameter_jacobian`](VectorField::parameter_jacobian).
 ///
 /// If the states lie on a surface that depends on the parameters, so does y₀: its derivatives are
 /// given by [`by_parameter_from`](Sensitivities::by_parameter_from). Columns that begin tangent to
-/// the surface stay tangent to it within the tolerances; they are integrated along the
-/// [projected](VectorField::project) states, but not projected themselves.
+/// the surface stay tangent to it within the tolerances; these columns are integrated along the
+/// [projected](VectorField::project) states, but are not projected themselves.
 ///
 /// ```
 /// use pc_solve::{Options, Sensitivities, from_fn, Solve};
@@ -63,9 +63,9 @@ enum Start {
 /// When the implicit equations of the columns are solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Correction {
-    /// After those of the state, once it has passed its error test.
+    /// After the equations of the state, once the state has passed its error test.
     Staggered,
-    /// Together with those of the state.
+    /// Together with the equations of the state.
     Simultaneous,
 }
 
@@ -93,17 +93,18 @@ impl Sensitivities {
         self
     }
 
-    /// Adds a column ∂y/∂pⱼ, for a start that does not depend on pⱼ.
+    /// Adds a column ∂y/∂pⱼ, for an initial state that does not depend on pⱼ.
     pub fn by_parameter(self, j: usize) -> Self {
         self.with(Some(j), Start::Zero)
     }
 
-    /// Adds a column ∂y/∂pⱼ for each j, for a start that depends on none of them.
+    /// Adds a column ∂y/∂pⱼ for each j, for an initial state that depends on none of these
+    /// parameters.
     pub fn by_parameters(self, parameters: impl IntoIterator<Item = usize>) -> Self {
         parameters.into_iter().fold(self, Sensitivities::by_parameter)
     }
 
-    /// Adds a column ∂y/∂pⱼ, for a start with the derivative ∂y₀/∂pⱼ.
+    /// Adds a column ∂y/∂pⱼ, for an initial state with the derivative ∂y₀/∂pⱼ.
     pub fn by_parameter_from(self, j: usize, start: impl Into<Vec<f64>>) -> Self {
         self.with(Some(j), Start::Along(start.into()))
     }
@@ -118,7 +119,7 @@ impl Sensitivities {
         components.into_iter().fold(self, Sensitivities::by_start)
     }
 
-    /// Adds a column (∂y/∂y₀) v, the derivative of the motion when its start moves along v.
+    /// Adds a column (∂y/∂y₀) v, the derivative of the motion as its initial state moves along v.
     pub fn along(self, direction: impl Into<Vec<f64>>) -> Self {
         self.with(None, Start::Along(direction.into()))
     }
@@ -130,30 +131,30 @@ impl Sensitivities {
 
     /// Whether steps also have to pass the error test of the columns.
     ///
-    /// If not, and with staggered correction, the steps are the same as without sensitivities,
-    /// unless the iteration for a column does not converge.
+    /// If they do not, and the correction is staggered, the steps are the same as without
+    /// sensitivities, unless the iteration for a column does not converge.
     pub fn error_control(self, error_control: bool) -> Self {
         Sensitivities { error_control, ..self }
     }
 
-    /// Sets the scales p̄ of the parameters or start values to which the columns refer, positive,
-    /// one for each column: p̄ s has the unit of the state, and the absolute tolerance of the
-    /// column s is that of the state divided by p̄.
+    /// Sets the scales p̄ of the parameters or initial values to which the columns refer, one
+    /// positive number for each column: p̄ s has the unit of the state, and the absolute tolerance
+    /// of the column s is that of the state divided by p̄.
     ///
     /// By default, p̄ is the [size of a parameter](VectorField::parameter_size), or if that is
     /// unknown, the value for which p̄ ∂f/∂p at the start is as large as f; for a component of the
-    /// start it is the magnitude of the component; each scale is at least 1.
+    /// initial state it is the magnitude of the component; each scale is at least 1.
     pub fn scales(self, scales: impl Into<Vec<f64>>) -> Self {
         Sensitivities { scales: Some(scales.into()), ..self }
     }
 
-    /// Sets the relative and absolute tolerance of the columns, positive; by default those of the
-    /// state, [scaled](Sensitivities::scales).
+    /// Sets the relative and absolute tolerance of the columns, both positive; by default, they are
+    /// those of the state, [scaled](Sensitivities::scales).
     pub fn tolerances(self, relative: f64, absolute: f64) -> Self {
         Sensitivities { tolerances: Some((relative, absolute)), ..self }
     }
 
-    /// Number of columns.
+    /// The number of columns.
     pub fn len(&self) -> usize {
         self.columns.len()
     }
@@ -262,8 +263,8 @@ impl Sensitivities {
     }
 }
 
-/// Checks that the rates do not jump at any time that depends on the parameter or, if none is
-/// given, on the start.
+/// Checks that the rates do not jump at any time that depends on the parameter or, if no parameter
+/// is given, on the initial state.
 ///
 /// # Errors
 /// [`InputError::RateJump`]
@@ -276,14 +277,14 @@ pub(crate) fn check_passages(field: &impl VectorField, parameter: Option<usize>)
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct SensitivityStatistics {
-    /// Evaluations of the equations of variation, for all columns at once.
+    /// The number of evaluations of the equations of variation, each for all columns at once.
     pub evaluations: u64,
-    /// Steps repeated because the estimated error of a column was too large.
+    /// The number of steps repeated because the estimated error of a column was too large.
     pub error_test_failures: u64,
-    /// Iterations of the nonlinear solver for the columns alone; 0 if the correction is
-    /// simultaneous.
+    /// The number of iterations of the nonlinear solver for the columns alone; 0 if the correction
+    /// is simultaneous.
     pub nonlinear_iterations: u64,
-    /// The number of times that solver failed to converge, including failures remedied by a new
-    /// Jacobian.
+    /// The number of times the nonlinear solver for the columns failed to converge, including
+    /// failures remedied by a new Jacobian.
     pub nonlinear_failures: u64,
 }

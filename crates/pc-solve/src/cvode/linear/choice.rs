@@ -7,9 +7,9 @@ use crate::error::InputError;
 use crate::settings::nonlinear_solver::NonlinearSolver;
 use crate::settings::options::Options;
 
-/// The number of components from which sparse factorisation is worth its overhead …
+/// The number of components from which sparse factorisation is worth its overhead, …
 const SPARSE_FROM: usize = 60;
-/// … if at most one entry in this many is nonzero.
+/// … provided that at most one entry in this many is nonzero.
 const SPARSE_DENSITY: usize = 8;
 
 /// The linear solver for `field`, if the nonlinear solver of `options` needs one.

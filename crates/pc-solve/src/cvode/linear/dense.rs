@@ -18,9 +18,9 @@ use crate::cvode::handles::{Vector, numbers_of};
 use crate::error::{NonFinite, SolveError};
 
 /// The number of components from which the blocked factorisation is used. In interleaved
-/// measurements it takes 1/4 of the time that SUNDIALS takes at 64 components, 1/5 at 100, 1/8 at
-/// 200 and 1/25 at 400; a solve takes 1/1.4, 1/1.7, 1/2 and 1/3; below some 20 components that of
-/// SUNDIALS is faster.
+/// measurements, this factorisation takes 1/4 of the time that SUNDIALS takes at 64 components, 1/5
+/// at 100, 1/8 at 200 and 1/25 at 400; a solve takes 1/1.4, 1/1.7, 1/2 and 1/3; below about 20
+/// components the factorisation of SUNDIALS is faster.
 const BLOCKED_FROM: usize = 64;
 
 /// The solver for a dense `matrix`.

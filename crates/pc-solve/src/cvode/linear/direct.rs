@@ -1,4 +1,4 @@
-//! Our direct linear solvers, wrapped as a `SUNLinearSolver`.
+//! Our direct linear solvers, each wrapped as a `SUNLinearSolver`.
 
 use std::ffi::c_int;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -12,9 +12,10 @@ use crate::cvode::handles::numbers_of;
 use crate::error::SolveError;
 
 const SUCCESS: c_int = 0;
-/// Code of `SUNLinSolSetup`: a shorter step, hence a smaller γ, may help.
+/// The return code of `SUNLinSolSetup` for a failure that a shorter step, and hence a smaller γ,
+/// may avoid.
 const SINGULAR: c_int = sys::SUNLS_LUFACT_FAIL as c_int;
-/// Code of `SUNLinSolSolve`: a shorter step may help.
+/// The return code of `SUNLinSolSolve` for a failure that a shorter step may avoid.
 const NOT_SOLVED: c_int = sys::SUNLS_PACKAGE_FAIL_REC as c_int;
 const FATAL: c_int = -1;
 
@@ -22,12 +23,12 @@ const FATAL: c_int = -1;
 #[derive(Debug)]
 pub(super) struct Singular;
 
-/// Factors of a matrix whose entries change while its address stays the same.
+/// The factors of a matrix whose entries change while its address stays the same.
 pub(super) trait Factors {
     /// Factorises `matrix`, in place or not.
     ///
     /// # Safety
-    /// `matrix` is the one for which the factors were made, and nobody else uses it.
+    /// `matrix` is the one for which the factors were made, and nothing else uses it.
     unsafe fn factorise(&mut self, matrix: sys::SUNMatrix) -> Result<(), Singular>;
 
     /// Replaces b by x with A x = b.

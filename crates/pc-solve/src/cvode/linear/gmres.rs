@@ -14,7 +14,7 @@ use crate::cvode::linear::krylov::{Krylov, Side};
 use crate::cvode::linear::preconditioner::Preconditioner;
 use crate::error::{NonFinite, SolveError};
 
-/// The solver for vectors like `y`.
+/// The solver for vectors of the same kind as `y`.
 pub(super) fn solver(krylov: &Krylov, context: &mut Context, y: &Vector) -> Result<Solver, SolveError> {
     let side = match krylov.preconditioner {
         None => sys::SUN_PREC_NONE,
@@ -31,7 +31,7 @@ pub(super) fn solver(krylov: &Krylov, context: &mut Context, y: &Vector) -> Resu
     Ok(solver)
 }
 
-/// Sets the tolerance and the callbacks of CVODES, whose linear solver has already been set;
+/// Sets the tolerance and the callbacks in CVODES, whose linear solver has already been set;
 /// returns the preconditioner for the callbacks.
 pub(super) fn attach<F: VectorField>(
     krylov: &Krylov,

@@ -16,7 +16,7 @@ pub enum Side {
     Right,
 }
 
-/// The method of generalised minimal residuals, GMRES [Saad, Schultz, SIAM J. Sci. Stat. Comp. 7
+/// The generalised minimal residual method, GMRES [Saad, Schultz, SIAM J. Sci. Stat. Comp. 7
 /// (1986) 856].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Krylov {
@@ -35,18 +35,19 @@ impl Default for Krylov {
 
 impl Krylov {
     /// A method that searches spaces spanned by b, A b, A² b, … of the given dimension, at least 1;
-    /// without restarts or preconditioner, with tolerance 0.05.
+    /// without restarts or a preconditioner, and with tolerance 0.05.
     pub fn new(dimension: u32) -> Self {
         Krylov { dimension, restarts: 0, tolerance: 0.05, preconditioner: None }
     }
 
-    /// Sets how often the method restarts from the residual with a new space if the first does not
-    /// suffice.
+    /// Sets how often the method restarts from the residual with a new space if the first one does
+    /// not suffice.
     pub fn restarts(self, restarts: u32) -> Self {
         Krylov { restarts, ..self }
     }
 
-    /// Sets the tolerance of the residual, relative to that of Newton's iteration; positive.
+    /// Sets the tolerance of the residual, relative to the tolerance of Newton's iteration; it is
+    /// positive.
     pub fn tolerance(self, tolerance: f64) -> Self {
         Krylov { tolerance, ..self }
     }
@@ -67,7 +68,7 @@ impl Krylov {
     }
 }
 
-/// Makes preconditioners. Two makers are equal if they are clones of the same one.
+/// Makes preconditioners. Two makers are equal if they are clones of the same maker.
 #[derive(Clone)]
 pub(super) struct Maker(pub(super) Arc<dyn Fn() -> Box<dyn Preconditioner + Send> + Send + Sync>);
 

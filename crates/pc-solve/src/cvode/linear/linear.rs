@@ -1,7 +1,7 @@
 //! The linear systems (I − γ ∂f/∂y) x = b of Newton's iteration, and their solvers.
 //!
 //! γ is the step length times a coefficient of the method. A solver has three stages, in order of
-//! increasing frequency: ∂f/∂y is renewed, I − γ ∂f/∂y is factorised, a system is solved.
+//! increasing frequency: ∂f/∂y is updated, I − γ ∂f/∂y is factorised, and a system is solved.
 
 use std::borrow::Cow;
 use std::ptr;
@@ -31,7 +31,7 @@ pub(crate) struct Linear {
 
 impl Linear {
     /// The solver of `choice`, which has been [checked](crate::cvode::linear::choice::choose), for
-    /// vectors like `y`.
+    /// vectors of the same kind as `y`.
     pub(crate) fn new(
         context: &mut Context,
         y: &Vector,
@@ -111,7 +111,7 @@ impl Linear {
     }
 }
 
-/// The zero pattern of ∂f/∂y; the full pattern if the field does not know it.
+/// The zero pattern of ∂f/∂y; the full pattern if the field does not know its pattern.
 fn pattern(field: &impl VectorField) -> Cow<'_, Pattern> {
     field.sparsity().map_or_else(|| Cow::Owned(Pattern::full(field.dim(), field.dim())), Cow::Borrowed)
 }

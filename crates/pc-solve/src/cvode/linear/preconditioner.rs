@@ -53,8 +53,8 @@ use pc_expr::{Failure, VectorField};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Preconditioner {
-    /// Computes the parts of ∂f/∂y at (t, y) that it needs; called first, and again whenever they
-    /// are out of date.
+    /// Computes the parts of ∂f/∂y at (t, y) that the preconditioner needs; called first, and again
+    /// whenever these parts are out of date.
     ///
     /// # Errors
     /// [`Failure`]; a recoverable one lets the integrator try a smaller step.

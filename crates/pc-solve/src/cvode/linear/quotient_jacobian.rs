@@ -24,7 +24,7 @@ fn least_increment(gamma: f64, f: &[f64], weights: &[f64]) -> f64 {
 ///
 /// # Safety
 /// Called by CVODES with the address of a [`UserData<F>`](crate::cvode::callback::UserData),
-/// vectors of its dimension and a matrix of our own for the field's pattern.
+/// vectors of its dimension and a matrix of our own type with the field's pattern.
 pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
     t: f64,
     z: sys::N_Vector,
@@ -63,7 +63,7 @@ pub(super) unsafe extern "C" fn jacobian<F: VectorField>(
 }
 
 impl Quotients {
-    /// Passes each entry k of ∂f/∂y at z to `write`; `f` is f at z.
+    /// Passes each entry k of ∂f/∂y at z to `write`; `f` holds the value of f at z.
     fn evaluate<F: VectorField>(
         &mut self,
         callbacks: &mut Callbacks<F>,

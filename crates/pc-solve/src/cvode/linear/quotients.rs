@@ -21,7 +21,7 @@ pub(super) struct Quotients {
 }
 
 impl Quotients {
-    /// Quotients for the CVODES instance at `memory`, which must outlive them.
+    /// Quotients for the CVODES instance at `memory`, which must outlive the quotients.
     pub(super) fn new(memory: &Memory, pattern: &Pattern, inequalities: &[Inequality]) -> Self {
         let colouring = pattern.colouring();
         let colours = (0..colouring.len()).map(|colour| colouring.columns(colour).collect()).collect();
@@ -45,8 +45,8 @@ impl Quotients {
         self.evaluations
     }
 
-    /// Moves component `j` of z by max(√ε |zⱼ|, `least`/wⱼ), in the direction that satisfies its
-    /// inequality, and returns the increment.
+    /// Moves component `j` of z by max(√ε |zⱼ|, `least`/wⱼ), in the direction in which the
+    /// component satisfies its inequality, and returns the increment.
     pub(super) fn shift(&mut self, j: usize, z: &[f64], weight: f64, least: f64) -> f64 {
         let length = (f64::EPSILON.sqrt() * z[j].abs()).max(least / weight);
         let forwards = self.inequalities.get(j).is_none_or(|inequality| inequality.holds(z[j] + length));

@@ -16,26 +16,28 @@ pub enum LinearSolver {
     /// quotients, with one evaluation of f for each component.
     Dense,
 
-    /// LU factors of a band matrix, whose nonzero entries (i, j) have −`upper` ≤ i − j ≤ `lower`.
+    /// LU factors of a band matrix, whose nonzero entries (i, j) satisfy −`upper` ≤ i − j ≤
+    /// `lower`.
     ///
     /// ∂f/∂y is the field's [sparse Jacobian](pc_expr::VectorField::sparse_jacobian) if it has one
     /// and knows its zero pattern, or else difference quotients, with one evaluation of f for each
     /// of the lower + upper + 1 diagonals. A known pattern must lie in the band.
     Band {
-        /// Diagonals below the main one.
+        /// The number of diagonals below the main one.
         lower: usize,
-        /// Diagonals above the main one.
+        /// The number of diagonals above the main one.
         upper: usize,
     },
 
-    /// Sparse LU factors, computed by the crate `faer`; the order of elimination is found once.
+    /// Sparse LU factors, computed by the crate `faer`; the elimination order is determined only
+    /// once.
     ///
-    /// Needs the field's [zero pattern](pc_expr::VectorField::sparsity). ∂f/∂y is the field's
+    /// Requires the field's [zero pattern](pc_expr::VectorField::sparsity). ∂f/∂y is the field's
     /// [sparse Jacobian](pc_expr::VectorField::sparse_jacobian), or else difference quotients, with
     /// one evaluation of f for each colour of the pattern [Curtis, Powell, Reid 1974].
     Sparse,
 
-    /// GMRES without a matrix [Saad, Schultz 1986], with the field's
+    /// Matrix-free GMRES [Saad, Schultz 1986], with the field's
     /// [products](pc_expr::VectorField::jvp) (∂f/∂y) v, or else difference quotients along v.
     Krylov(Krylov),
 }

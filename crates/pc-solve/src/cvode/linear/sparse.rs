@@ -1,4 +1,4 @@
-//! Matrices in compressed columns, as `SUNMatrix`.
+//! Matrices in compressed-column form, wrapped as `SUNMatrix`.
 
 use std::ffi::{c_int, c_void};
 use std::slice;
@@ -24,7 +24,7 @@ pub(super) struct Places {
 }
 
 impl Places {
-    /// The positions for a square `jacobian`.
+    /// The positions for the pattern of a square `jacobian`.
     pub(super) fn new(jacobian: &Pattern) -> Places {
         let n = jacobian.columns();
         let with_diagonal = (0..n).map(|j| jacobian.column(j).iter().copied().chain([j]));
@@ -97,7 +97,7 @@ unsafe fn new(context: sys::SUNContext, places: &Places) -> sys::SUNMatrix {
 /// The content of `matrix`.
 ///
 /// # Safety
-/// `matrix` was made by [`matrix`] or is a clone of such a matrix, and nobody else uses it during
+/// `matrix` was made by [`matrix`] or is a clone of such a matrix, and nothing else uses it during
 /// `'a`.
 pub(super) unsafe fn content<'a>(matrix: sys::SUNMatrix) -> &'a mut Compressed {
     // SAFETY: as promised.

@@ -13,7 +13,7 @@ use super::sparse;
 use crate::cvode::context::Context;
 use crate::error::SolveError;
 
-/// The solver for a `matrix` in compressed columns with this pattern.
+/// The solver for a `matrix` in compressed-column form with this pattern.
 pub(super) fn solver(
     context: &mut Context,
     matrix: &Matrix,
@@ -28,8 +28,8 @@ pub(super) fn solver(
 }
 
 /// P A Q = L U. The order Q of the columns, which keeps L and U sparse for every P, is found once,
-/// from the pattern; the order P of the rows is found for each matrix, from the largest pivot in
-/// each column.
+/// from the pattern; the order P of the rows is found for each matrix, by choosing the largest
+/// pivot in each column.
 struct SparseLu {
     symbolic: SymbolicLu<usize>,
     numeric: NumericLu<usize, f64>,
@@ -126,8 +126,8 @@ mod tests {
             ..ProptestConfig::default()
         })]
 
-        /// The matrices are diagonally dominant, so well conditioned: errors amount to a few
-        /// rounding errors of n operations.
+        /// The matrices are diagonally dominant, hence well conditioned: the errors amount to a few
+        /// times the rounding errors of n operations.
         #[test]
         fn sparse_factors_are_the_dense_ones((pattern, first, second) in matrices()) {
             let n = pattern.rows();

@@ -9,14 +9,14 @@ use super::plan::Plan;
 use super::waiting::Waiting;
 
 /// The number of vectors whose steps alternate: a step ends with a chain of dependent operations,
-/// during which the processor begins the step of the other vector.
+/// and meanwhile the processor begins the step of the other vector.
 const OCTETS: usize = 2;
-/// Maximum number of members in a block.
+/// The maximum number of members in a block.
 pub(crate) const WIDTH: usize = OCTETS * LANES;
 /// The number of steps between two checks of whether to go on.
 const UNWATCHED: usize = 64;
 
-/// Lanes that integrate members of one program.
+/// Lanes that integrate members with the same program.
 pub(crate) struct Block<'a, N> {
     octets: Vec<Octet<'a, N>>,
     waiting: Waiting<'a, N>,

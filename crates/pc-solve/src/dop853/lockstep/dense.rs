@@ -1,5 +1,5 @@
-//! The tapes that compute states inside a step: one its [polynomial](super::super::dense), the
-//! other a value of the polynomial.
+//! The tapes that compute states inside a step: one computes the [polynomial](super::super::dense)
+//! of the step, the other a value of the polynomial.
 
 use pc_expr::{Fused, LaneTape, LaneValue};
 
@@ -11,7 +11,8 @@ use super::problem::Problem;
 pub(super) const TERMS: usize = 8;
 
 /// The tape that reads the step's length with its sign, y, ẏ and stages 6 to 12, then y and ẏ at
-/// the end, then a member's constants; it writes the terms, and all bits set where they are valid.
+/// the end, then a member's constants; it writes the terms, and a mask with all bits set where they
+/// are valid.
 pub(super) fn polynomial(problem: &Problem<'_>) -> LaneTape {
     let tape = &mut LaneTape::new();
     let h = tape.input();

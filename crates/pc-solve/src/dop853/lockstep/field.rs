@@ -1,12 +1,13 @@
-//! f on a tape, and the sums over its stages.
+//! The function f on a tape, and the sums over its stages.
 
 use pc_expr::{Binary, LaneTape, LaneValue, Program};
 
-/// f with its inputs other than the state: the constants of a member, computed from its parameters.
+/// The function f with its inputs other than the state: the constants of a member, computed from
+/// its parameters.
 pub(super) struct Field<'a> {
     pub(super) program: &'a Program,
-    /// The number of pivots that are watched, and the ratio to the largest size below which a pivot
-    /// counts as zero.
+    /// The number of pivots that are watched, and the ratio of a pivot to the largest size below
+    /// which the pivot counts as zero.
     pub(super) pivots: usize,
     pub(super) vanishing: f64,
     /// The values that the program reads as its parameters.
@@ -19,7 +20,7 @@ pub(super) struct Field<'a> {
 pub(super) const FIXED: usize = 2;
 
 /// The number of components from which it pays to compute the products h aⱼ: there are 50 of them
-/// in a step, and they save a product per component in each of 11 stages.
+/// in a step, and together they save one product per component in each of 11 stages.
 const MANY: usize = 5;
 
 /// The validity of the lanes: a mask, and a sum that is 0 as long as all values checked are finite.
@@ -30,7 +31,7 @@ pub(super) struct Health {
 }
 
 impl Field<'_> {
-    /// f at a state; notes in `health` whether the pivots are regular.
+    /// Computes f at a state; notes in `health` whether the pivots are regular.
     pub(super) fn rates(
         &self,
         tape: &mut LaneTape,
@@ -65,7 +66,7 @@ impl Health {
         Health { regular: tape.bits(u64::MAX), finite: tape.constant(0.0) }
     }
 
-    /// Checks that these values are finite, using their sum.
+    /// Checks, by means of their sum, that these values are finite.
     pub(super) fn look(&mut self, tape: &mut LaneTape, values: &[LaneValue]) {
         let zero = tape.constant(0.0);
         let sum = values.iter().copied().reduce(|sum, value| tape.add(sum, value));
@@ -118,8 +119,8 @@ pub(super) fn sums(tape: &mut LaneTape, a: [&[f64]; 2], k: &[&[LaneValue]]) -> [
 
 /// y + h Σ aⱼ kⱼ
 ///
-/// If there are many components it is computed as y + Σ (h aⱼ) kⱼ, which takes fewer operations, of
-/// which fewer wait for the last k.
+/// If there are many components, the sum is computed as y + Σ (h aⱼ) kⱼ, which takes fewer
+/// operations, and fewer of these have to wait for the last k.
 pub(super) fn advanced(
     tape: &mut LaneTape,
     y: &[LaneValue],

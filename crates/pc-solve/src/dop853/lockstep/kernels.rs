@@ -11,7 +11,7 @@ use super::problem::Problem;
 use super::start::start;
 use super::step::step;
 
-/// Maximum number of operations of a step: longer code is slow to compile and slow to fetch.
+/// The maximum number of operations in a step: longer code is slow to compile and slow to fetch.
 const LONGEST: usize = 20_000;
 
 /// The kernels of a program, for members with any parameters.
@@ -20,7 +20,7 @@ pub(crate) struct Kernels {
     key: Key,
     pub(super) dim: usize,
     pub(super) parameters: usize,
-    /// Number of rows of a member's constants.
+    /// The number of rows that hold a member's constants.
     pub(super) numbers: usize,
     pub(super) start: LaneKernel,
     pub(super) step: LaneKernel,
@@ -36,8 +36,8 @@ pub(super) struct Inside {
 }
 
 impl Kernels {
-    /// The kernels of a field; none if its program reads time, or if the code of a step would be
-    /// too long.
+    /// The kernels of a field; none if the program of the field reads the time, or if the code of a
+    /// step would be too long.
     pub(crate) fn new(field: &LaneField, plan: &Plan, set: Option<InstructionSet>) -> Option<Kernels> {
         let program = &field.program;
         let dim = program.state_len();

@@ -9,8 +9,8 @@ pub(crate) trait Members {
     /// Identifies a member.
     type Name;
 
-    /// The next member, with its field, to which the kernels of the block apply, and its start;
-    /// none if the source has no member.
+    /// The next member, with its start and its field, to which the kernels of the block apply; none
+    /// if the source has no member.
     fn next(&mut self, from: Source) -> Option<(Self::Name, LaneField, Vec<f64>)>;
 
     /// Receives the complete motion of a member, or none if the member has to be integrated alone.
@@ -20,12 +20,12 @@ pub(crate) trait Members {
     fn is_stopped(&self) -> bool;
 }
 
-/// Where members come from.
+/// Where the members come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Source {
     /// Members that this thread already has.
     AtHand,
-    /// These members, and those that the thread can get at once.
+    /// Members that this thread already has, and those that it can get at once.
     Available,
     /// Any member, waiting for it if necessary.
     Awaited,

@@ -15,20 +15,20 @@ use crate::integration::trajectory::Trajectory;
 struct Occupant<N> {
     name: N,
     motion: Trajectory,
-    /// Index of the next output time.
+    /// The index of the next output time.
     next: usize,
-    /// Steps up to the last output.
+    /// The number of steps up to the last output.
     steps: u64,
 }
 
-/// A vector whose lanes hold members of one program.
+/// A vector whose lanes hold members with the same program.
 pub(super) struct Octet<'a, N> {
     plan: &'a Plan,
     kernels: &'a Kernels,
-    /// Lanes in use.
+    /// The lanes in use.
     width: usize,
     lanes: [Option<Occupant<N>>; LANES],
-    /// Number of lanes with members.
+    /// The number of lanes with members.
     working: usize,
     frame: Vec<Lanes>,
     polynomial: Vec<Lanes>,
@@ -98,7 +98,7 @@ impl<'a, N> Octet<'a, N> {
         self.working += 1;
     }
 
-    /// Makes a step in each lane; returns whether one needs attention.
+    /// Makes a step in each lane; returns whether any lane needs attention.
     #[inline]
     pub(super) fn step(&mut self) -> bool {
         if self.is_idle() {
@@ -165,7 +165,8 @@ impl<'a, N> Octet<'a, N> {
         }
     }
 
-    /// Evaluates y at the fraction s of the last step of a lane; returns whether it is valid.
+    /// Evaluates y at the fraction s of the last step of a lane; returns whether the state is
+    /// valid.
     fn inside(&mut self, lane: usize, s: f64) -> bool {
         let Some(inside) = &self.kernels.inside else { return false };
         let terms = TERMS * self.kernels.dim;
@@ -200,13 +201,13 @@ impl<'a, N> Octet<'a, N> {
         members.end(name, Some(motion));
     }
 
-    /// Gives up all members, to be integrated alone.
+    /// Gives up all members, so that each is integrated alone.
     pub(super) fn clear(&mut self, members: &mut impl Members<Name = N>) {
         (0..LANES).for_each(|lane| self.leave(lane, members));
     }
 
-    /// Gives up a member, to be integrated alone; its lane continues with the values of another
-    /// one, if any.
+    /// Gives up a member, so that it is integrated alone; its lane goes on with the values of
+    /// another member, if there is one.
     fn leave(&mut self, lane: usize, members: &mut impl Members<Name = N>) {
         let Some(occupant) = self.vacate(lane) else { return };
         if let Some(other) = self.lanes.iter().position(Option::is_some) {

@@ -5,7 +5,8 @@ use pc_expr::{Deadline, Method};
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
 
-/// Lanes do not support a start that is farther from 0 than this many times the span of the motion.
+/// Lanes do not support a start time that is farther from 0 than this many times the span of the
+/// motion.
 const FARTHEST: f64 = 1e4;
 
 /// Times, tolerances and limits, as far as lanes support them.
@@ -28,8 +29,7 @@ pub(crate) struct Plan {
 
 impl Plan {
     /// The plan; none if the input is invalid, which each member then reports by itself, or if
-    /// lanes do not support it because of another method, inequalities, a minimum step or a stop
-    /// time.
+    /// lanes do not support it because of the method, inequalities, a minimum step or a stop time.
     pub(crate) fn new(start: f64, times: &[f64], options: &Options) -> Option<Plan> {
         let more = !matches!(options.method, Method::Auto | Method::Dop853)
             || !options.inequalities.is_empty()
@@ -65,7 +65,7 @@ impl Plan {
             })
     }
 
-    /// Whether the tapes of both plans are the same.
+    /// Whether both plans have the same tapes.
     pub(super) fn is_like(&self, other: &Plan) -> bool {
         let limits = |plan: &Plan| (plan.start, plan.end(), plan.direction, plan.relative, plan.max_steps);
         let lengths = |plan: &Plan| (plan.longest, plan.first, plan.has_inside(), plan.watches_stiffness);
@@ -78,7 +78,8 @@ impl Plan {
         self.times.iter().any(|&t| t != self.start && t != self.end())
     }
 
-    /// The absolute tolerance of each component; none if their number differs.
+    /// The absolute tolerance of each component; none if the number of tolerances differs from the
+    /// number of components.
     pub(super) fn absolute(&self, dim: usize) -> Option<Vec<f64>> {
         match &self.absolute {
             Tolerance::Scalar(tolerance) => Some(vec![*tolerance; dim]),

@@ -8,7 +8,8 @@ use super::plan::Plan;
 /// The function f and the plan, from which the tapes are made.
 pub(super) struct Problem<'a> {
     pub(super) plan: &'a Plan,
-    /// Computes a member's constants from its parameters; `program` computes f from these.
+    /// Computes a member's constants from its parameters; `program` computes f from these
+    /// constants.
     pub(super) numbers: &'a Program,
     pub(super) program: &'a Program,
     pub(super) pivots: usize,
@@ -22,13 +23,13 @@ impl<'a> Problem<'a> {
         self.program.state_len()
     }
 
-    /// f, where the next rows of the tape hold a member's constants.
+    /// The function f, if the next rows of the tape hold a member's constants.
     pub(super) fn field(&self, tape: &mut LaneTape) -> Field<'a> {
         let numbers = tape.inputs(self.program.parameters_len());
         self.field_of(tape, numbers)
     }
 
-    /// f, where the next rows of the tape hold a member's parameters.
+    /// The function f, if the next rows of the tape hold a member's parameters.
     pub(super) fn field_of_parameters(&self, tape: &mut LaneTape) -> Field<'a> {
         let parameters = tape.inputs(self.numbers.parameters_len());
         let none = tape.constant(0.0);

@@ -8,14 +8,14 @@ use pc_expr::LaneField;
 use super::kernels::{Kernels, Key};
 use super::plan::Plan;
 
-/// The number of pairs of program and plan whose kernels are cached.
+/// The number of pairs of a program and a plan whose kernels are cached.
 const KEPT: usize = 8;
 
-/// The latest kernels, for all threads; clones share them.
+/// The latest kernels, for all threads; clones share these kernels.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Shelf(Arc<Mutex<VecDeque<Made>>>);
 
-/// The kernels of a program and a plan, if there are any.
+/// The kernels of a program and a plan, if the cache has any.
 #[derive(Debug)]
 struct Made {
     key: Key,

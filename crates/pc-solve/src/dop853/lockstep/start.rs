@@ -1,5 +1,5 @@
-//! The tape of a start, which computes the rates there and the length of the first step [Hairer,
-//! Nørsett, Wanner 1993, II.4].
+//! The tape of a start, which computes the rates at the start and the length of the first step
+//! [Hairer, Nørsett, Wanner 1993, II.4].
 
 use pc_expr::{Binary, LaneTape, LaneValue};
 
@@ -8,7 +8,8 @@ use super::field::{Health, advanced};
 use super::problem::Problem;
 
 /// The tape that reads y, the parameters of a member and its constant pivots, and writes ẏ, the
-/// member's constants, the length of the first step, and all bits set where these are valid.
+/// member's constants, the length of the first step, and a mask with all bits set where these are
+/// valid.
 pub(super) fn start(problem: &Problem<'_>) -> LaneTape {
     let tape = &mut LaneTape::new();
     let y = tape.inputs(problem.dim());

@@ -1,8 +1,8 @@
 //! The tape of a step.
 //!
-//! The step and its errors are those of [`stages`](super::super::stages), its length that of
-//! [`control`](super::super::control), but with roots and weights computed to a few digits only,
-//! which suffice for a length.
+//! The step and its errors are those of [`stages`](super::super::stages), and its length is that of
+//! [`control`](super::super::control), but with roots and weights computed to only a few digits,
+//! which is sufficient for a length.
 
 use pc_expr::{Binary, Fused, LaneTape, LaneValue};
 
@@ -12,7 +12,8 @@ use super::field::{Health, advanced, normalise, sum, sums};
 use super::problem::Problem;
 use super::stiffness::Counters;
 
-/// The rows that a step reads and replaces, before those of y, ẏ and the member's constants.
+/// The rows that a step reads and replaces; the rows of y, ẏ and the member's constants follow
+/// them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Row {
     /// t
@@ -25,22 +26,22 @@ pub(super) enum Row {
     Active,
     /// All bits set where the last attempt was rejected.
     Refused,
-    /// Accepted steps since the last output.
+    /// The number of accepted steps since the last output.
     Steps,
-    /// Attempts, accepted or not.
+    /// The number of attempted steps, accepted or not.
     Tries,
-    /// The length of the first step with its sign; 0 before it.
+    /// The length of the first step, with its sign; 0 before that step.
     First,
-    /// The number of steps that seem to be limited by stability, if stiffness is watched for.
+    /// The number of steps that seem to be limited by stability, if stiffness is to be detected.
     Suspect,
     /// The number of successive steps since the last such step.
     Clear,
 }
 
-/// The number of these rows.
+/// The number of rows that a step reads and replaces.
 pub(super) const ROWS: usize = 10;
 
-/// The results that are written to rows of their own.
+/// The results that a step writes to rows of their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Output {
     /// All bits set where an accepted step has reached `Due`, or the integration cannot go on.
@@ -54,10 +55,10 @@ pub(super) enum Output {
     Signed,
 }
 
-/// Fraction by which a step may be stretched to reach the end.
+/// The fraction by which a step may be stretched to reach the end.
 const LEFT: f64 = 0.01;
 
-/// The tape of a step, with the results for states inside it if `inside`.
+/// The tape of a step; if `inside`, it also writes the results needed for states inside the step.
 pub(super) fn step(problem: &Problem<'_>, inside: bool) -> LaneTape {
     let tape = &mut LaneTape::new();
     let [t, length, due, active, refused, steps, tries, first, suspect, clear] =
@@ -245,8 +246,8 @@ fn inverse(tape: &mut LaneTape, x: LaneValue) -> LaneValue {
     tape.multiply_add(value, rest, value)
 }
 
-/// x^(−1/16), at most 1 % too small, from its bits and a step of Newton's method; NaN for a NaN, −∞
-/// where x is infinite.
+/// x^(−1/16), at most 1 % too small, from its bits and a step of Newton's method; NaN if x is NaN,
+/// −∞ if x is infinite.
 fn inverse_sixteenth_root(tape: &mut LaneTape, x: LaneValue) -> LaneValue {
     // For so small an error, the length grows by the maximum anyway.
     let least = tape.constant(1e-60);

@@ -1,11 +1,11 @@
-//! Detection of stiffness on the tape, as in [`stiffness`](super::super::stiffness), in each step.
+//! Detection of stiffness on the tape, as in [`stiffness`](super::super::stiffness), but in every
+//! step.
 
 use pc_expr::{Binary, LaneTape, LaneValue};
 
 use super::super::stiffness::{BOUNDARY, CLEAR, SUSPECT};
 
-/// The counters of a lane: suspect steps, and the successive steps since then that were not
-/// suspect.
+/// The counters of a lane: the suspect steps, and the successive steps since the last suspect one.
 #[derive(Clone, Copy)]
 pub(super) struct Counters {
     pub(super) suspect: LaneValue,
@@ -16,8 +16,9 @@ impl Counters {
     /// Counts an accepted step of length h; returns the new counters, and the mask of the lanes
     /// that are stiff.
     ///
-    /// `states` and `rates` belong to the end of the step and to its last stage. A step is suspect
-    /// if h² ‖f(t₁, y₁) − k₁₂‖² exceeds the square of the boundary of stability times ‖y₁ − g₁₂‖².
+    /// `states` and `rates` are those at the end of the step and at its last stage. A step is
+    /// suspect if h² ‖f(t₁, y₁) − k₁₂‖² exceeds the square of the boundary of stability times ‖y₁ −
+    /// g₁₂‖².
     pub(super) fn count(
         self,
         tape: &mut LaneTape,

@@ -12,7 +12,7 @@ use super::members::{Members, Source};
 pub(super) struct Waiting<'a, N> {
     kernels: &'a Kernels,
     names: [Option<N>; LANES],
-    /// The start of each member, in its lane.
+    /// The start of each member, in the lane of the member.
     frame: Vec<Lanes>,
 }
 
@@ -28,8 +28,8 @@ impl<'a, N> Waiting<'a, N> {
     }
 
     /// The next waiting member, or a new one. While lanes are free, new members are taken from any
-    /// source; otherwise only from those that this thread already has, so as not to take work from
-    /// other threads.
+    /// source; otherwise only from those that this thread already has, so as not to take work away
+    /// from other threads.
     pub(super) fn next(
         &mut self,
         free: usize,
@@ -46,7 +46,7 @@ impl<'a, N> Waiting<'a, N> {
         }
     }
 
-    /// Takes new members; false if there are none.
+    /// Takes new members; returns false if there are none.
     fn gather(&mut self, free: usize, is_idle: bool, members: &mut impl Members<Name = N>) -> bool {
         let mut count = 0;
         while count < LANES {
@@ -87,8 +87,8 @@ impl<'a, N> Waiting<'a, N> {
             && watched.smallest > watched.vanishing * watched.largest
     }
 
-    /// Writes the state and the parameters of a member to a lane; those of the first member are
-    /// written to all lanes.
+    /// Writes the state and the parameters of a member to a lane; the state and the parameters of
+    /// the first member are written to all lanes.
     fn place(&mut self, lane: usize, field: &LaneField, y: &[f64]) {
         let watched = [field.watched.smallest, field.watched.largest];
         let numbers = y.iter().chain(&field.parameters).chain(&watched);
@@ -100,7 +100,7 @@ impl<'a, N> Waiting<'a, N> {
         }
     }
 
-    /// y, then ẏ and the constants of the member in a lane.
+    /// The values y, then ẏ and the constants, of the member in a lane.
     pub(super) fn columns(&self, lane: usize) -> (impl Iterator<Item = f64>, impl Iterator<Item = f64>) {
         let column = |rows: Range<usize>| self.frame[rows].iter().map(move |row| row.0[lane]);
         (column(0..self.kernels.dim), column(self.kernels.start.first_output()..self.after()))
