@@ -151,7 +151,7 @@ impl Chart {
         self.last.push(value);
     }
 
-    /// The determinant on the line from one end of a step to the other, at the fraction `s` of it.
+    /// The determinant on the line from one end of a step to the other, at the fraction `s` of the way.
     fn along(&mut self, s: f64, from: (f64, &[f64]), to: (f64, &[f64]), parameters: &[f64]) -> f64 {
         let mut x = std::mem::take(&mut self.between);
         for (x, (a, b)) in x.iter_mut().zip(from.1.iter().zip(to.1)) {
@@ -199,7 +199,7 @@ impl Chart {
         }
     }
 
-    /// Whether a motion with these velocities, after such a passage, is at rest in the undetermined
+    /// Whether a motion with these velocities, past such a zero or pole, is at rest in the undetermined
     /// direction: it then continues uniquely. False if the columns are not those of ẋ.
     pub(crate) fn rests(
         &mut self,

@@ -102,7 +102,7 @@ impl<'g> FirstOrder<'g> {
         self.parameters.iter().map(|&(symbol, _)| symbol).collect()
     }
 
-    /// The unknowns w = M⁻¹ r; an unknown that is a single quotient is shortened once more.
+    /// The unknowns w = M⁻¹ r; an unknown that is a single quotient is then simplified once more.
     pub(crate) fn solve(&self, factors: &Factors<'g>) -> Vec<Expr<'g>> {
         if let Some(tree) = &self.tree {
             return tree.system.in_order(&tree.dynamics.accelerations());

@@ -1,4 +1,4 @@
-//! Motions under forces that are computed outside.
+//! Motions under external forces, which the caller computes.
 
 use pc_expr::{Expr, Failure, Pattern, SteepFunctions, TimeDependence, VectorField};
 
@@ -107,10 +107,10 @@ fn derived(options: CompileOptions) -> CompileOptions {
 }
 
 impl Motion {
-    /// The motion under the forces that `force` computes. They act on the quasi-velocities called `names`,
-    /// those for which external forces were [declared](crate::SystemBuilder::external_force), in that order. It
-    /// [keeps](Motion::keep) the same integrals. It has a Jacobian if this motion has one, and also [one with
-    /// respect to its parameters](CompileOptions::parameter_jacobian).
+    /// The motion under the forces that `force` computes. The forces act on the quasi-velocities called
+    /// `names`, those for which external forces were [declared](crate::SystemBuilder::external_force), in that
+    /// order. It [keeps](Motion::keep) the same integrals. The new motion has a Jacobian if this one has, and
+    /// also [one with respect to its parameters](CompileOptions::parameter_jacobian).
     ///
     /// # Errors
     /// [`ForceError::NoneDeclared`] without names; [`ShapeError`] for more names than the motion has inputs.
@@ -208,8 +208,8 @@ impl<F: ExternalForce> ForcedMotion<F> {
         }
     }
 
-    /// Writes the observables at (t, y) to `values` without computing the forces; those that contain one are
-    /// not finite.
+    /// Writes the observables at (t, y) to `values` without computing the forces; observables that contain a
+    /// force are not finite.
     ///
     /// # Panics
     /// As for [`Motion::observe_to`].

@@ -13,7 +13,7 @@ const MOST_STEPS: usize = 200;
 const HALVINGS: i32 = 60;
 /// A residual this small relative to its terms is accepted as a solution.
 const ENOUGH: f64 = 1e-12;
-/// A residual this small consists of a few rounding errors, which no step can reduce.
+/// A residual this small consists of a few rounding errors, and no step can reduce it.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Solves F = r(t, y) − p(t, y, w) = 0 for w:

@@ -23,9 +23,9 @@ impl Multipliers<'_> {
     ///   ẏ_s = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α,   ẋ = b η + b_0,   C η + c_0 = 0.
     ///
     /// No velocities are chosen as independent, so a position is singular only where the constraints themselves are.
-    /// States are projected as those of [`compile_for`](Multipliers::compile_for) are, with the same observables and
-    /// [kept](Motion::keep) integrals; integrals to be kept must be those of the equations with these multipliers.
-    /// Products with the Jacobian are not available.
+    /// Its projection, observables and [kept](Motion::keep) integrals are the same as with
+    /// [`compile_for`](Multipliers::compile_for); integrals to be kept must be integrals of the equations with these
+    /// multipliers. Products with the Jacobian are not available.
     ///
     /// `guess` is the η from which the solution of y = ∂L/∂η starts, where L is not quadratic in η or a
     /// constraint is not affine.
@@ -142,8 +142,8 @@ impl InMomenta {
         &mut self.inner
     }
 
-    /// The time dependence through functions of t alone: the other time dependence of the motion of
-    /// (x, η) refers to other variables.
+    /// The time dependence through functions of t alone; the rest of the time dependence of the motion of (x,
+    /// η) is in terms of other variables.
     pub(crate) fn time_dependence(&self) -> TimeDependence {
         match self.inner.time_dependence() {
             TimeDependence::Known(profile) => TimeDependence::Known(profile).with_unknown(),
@@ -172,7 +172,7 @@ impl InMomenta {
         self.transform.to_quasi_velocities_in(t, y, &mut self.state)
     }
 
-    /// The (x, η, z) read last.
+    /// The last (x, η, z) that was read.
     pub(crate) fn state(&self) -> &[f64] {
         &self.state
     }
@@ -286,7 +286,8 @@ impl InMomenta {
         self.inner.jacobian(t, &self.known[..y.len()], &mut self.of_inner)
     }
 
-    /// Computes ∂f/∂p, column by column, as [`jacobian`](InMomenta::jacobian) does ∂f/∂y.
+    /// Computes ∂f/∂p, column by column, in the way in which [`jacobian`](InMomenta::jacobian) computes
+    /// ∂f/∂y.
     pub(crate) fn parameter_jacobian(
         &mut self,
         t: f64,
@@ -300,7 +301,7 @@ impl InMomenta {
         outcome
     }
 
-    /// Computes ∂f/∂t, as [`jacobian`](InMomenta::jacobian) does ∂f/∂y.
+    /// Computes ∂f/∂t, in the way in which [`jacobian`](InMomenta::jacobian) computes ∂f/∂y.
     pub(crate) fn time_derivative(
         &mut self,
         t: f64,

@@ -71,7 +71,7 @@ pub(super) enum Form {
 ///
 ///   ẏ = ∂p/∂t + (∂p/∂x) ẋ + (∂p/∂z) ż + M η̇ = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α.
 ///
-/// First-order states z follow in both.
+/// In both motions the first-order states z come last.
 #[derive(Clone, Debug)]
 pub(crate) struct InMomenta {
     pub(super) transform: LegendreTransform,
@@ -86,7 +86,7 @@ pub(crate) struct InMomenta {
     /// x, η, z, then η̇.
     pub(super) known: Vec<f64>,
     pub(super) full: Pattern,
-    /// Storage for the x, η, z read last, for their projection, and for the rates of both motions.
+    /// Storage for the last x, η, z that were read, for their projection, and for the rates of both motions.
     pub(super) state: Vec<f64>,
     pub(super) projected: Vec<f64>,
     pub(super) rates: Vec<f64>,
@@ -181,8 +181,8 @@ impl Motion {
         }
     }
 
-    /// The motion in quasi-velocities from which a motion in momenta under constraints is derived; for other
-    /// motions, this one.
+    /// The motion in quasi-velocities from which a motion in momenta under constraints is derived; for any
+    /// other motion, the motion itself.
     pub fn in_quasi_velocities(&self) -> &Motion {
         match &self.form {
             Form::InMomenta(motion) => motion.inner(),
@@ -216,7 +216,7 @@ impl Motion {
     /// ```
     ///
     /// # Panics
-    /// If one of their indices is not that of a parameter.
+    /// If one of the indices is not the index of a parameter.
     #[must_use]
     pub fn driven_by(mut self, signals: Signals) -> Motion {
         assert!(signals.places().all(|place| place < self.parameters().len()), "places of parameters");
@@ -250,8 +250,8 @@ impl Motion {
     }
 
     /// The observables at (t, y), as many as [`observable_names`](Motion::observable_names); not finite where a table
-    /// that it is [driven by](Motion::driven_by) has no value. Where the motion slides along a surface on which its rates
-    /// jump, they are those of [Filippov's combination](pc_expr::Sliding).
+    /// that it is [driven by](Motion::driven_by) has no value. Where the motion slides along a surface on which its
+    /// rates jump, the observables are those of [Filippov's combination](pc_expr::Sliding).
     ///
     /// # Panics
     /// If `y` does not have the length of the state.
@@ -271,7 +271,7 @@ impl Motion {
     }
 
     /// The observables on the side of each surface that the signs at y indicate, even where the motion slides along
-    /// the surface; the signs may then be due to rounding.
+    /// the surface; the signs may then be due to rounding errors.
     ///
     /// # Panics
     /// As [`observe`](Motion::observe).
@@ -386,7 +386,8 @@ impl Motion {
         }
     }
 
-    /// The motion with accelerations and reactions from `schur`, if that takes fewer operations or is chosen.
+    /// The motion with accelerations and reactions computed by `schur`, if that takes fewer operations or the
+    /// options choose it.
     pub(crate) fn by_joints(mut self, schur: Schur) -> Motion {
         self.form = match self.form {
             Form::Staged(staged)

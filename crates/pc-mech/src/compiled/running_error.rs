@@ -20,8 +20,8 @@ const UNIT: f64 = 2.0 * f64::EPSILON;
 /// Keeps a quotient of two zeros from being NaN.
 const TINY: f64 = 1e-300;
 
-/// The magnitude below which numbers have fewer digits and a constant spacing, in units of errors. It is
-/// taken four times as large, since products with so small a number are rounded again.
+/// The magnitude below which numbers have fewer digits and a constant spacing, in units of errors. The value
+/// is four times the actual one, since products with so small a number are rounded again.
 const SPACING: f64 = 4.0 * f64::MIN_POSITIVE;
 
 /// Compiled functions with bounds on their rounding errors.

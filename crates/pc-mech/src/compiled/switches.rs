@@ -17,14 +17,14 @@ use crate::system::signals::Signals;
 
 /// Motions with more surfaces than this are not held.
 const MOST: usize = 256;
-/// The relative difference above which rates do not count as a sum of the changes at surfaces.
+/// The relative difference above which rates do not count as the sum of the changes at surfaces.
 const ADDS_UP: f64 = 1e-9;
 /// A surface that will be reached within this fraction of the time t counts as reached.
 const AT_ONCE: f64 = 1e-9;
 
 impl<'g> FirstOrder<'g> {
-    /// The motion held on its pieces; none if it has a single piece, or if a surface contains unknowns that are solved
-    /// for numerically.
+    /// The motion, held on one piece at a time; none if it has a single piece, or if a surface contains unknowns that
+    /// are solved for numerically.
     ///
     /// # Errors
     /// As for [`Program::new`].
@@ -88,7 +88,8 @@ impl<'g> FirstOrder<'g> {
     }
 }
 
-/// The functions of surfaces, with the signs of the preceding functions in place of sides.
+/// The functions that vanish on the surfaces, as text, with the signs of the preceding functions in place of
+/// sides.
 fn written_out<'g>(graph: &'g Graph, surfaces: &[Surface<'g>]) -> Vec<String> {
     let mut signs: Vec<(Expr<'g>, Expr<'g>)> = Vec::new();
     let written = surfaces.iter().map(|surface| {
@@ -100,8 +101,8 @@ fn written_out<'g>(graph: &'g Graph, surfaces: &[Surface<'g>]) -> Vec<String> {
 }
 
 impl<'g> FirstOrder<'g> {
-    /// The motion of a system on sides between −1 and 1, with the observables of this system; none if these depend
-    /// neither on sides nor on solved unknowns.
+    /// The motion of a system on sides between −1 and 1, with the observables of this system; none if the
+    /// observables depend neither on sides nor on unknowns that are solved for.
     ///
     /// # Errors
     /// As for [`Program::new`].
@@ -199,8 +200,8 @@ impl Switches {
         self.sides.as_ref().filter(|sides| sides.contains(&0.0)).cloned()
     }
 
-    /// Writes the observables where the motion slides along a surface at (t, y); false if it does not, or where none of
-    /// them changes from one side to the other.
+    /// Writes the observables where the motion slides along a surface at (t, y); false if it does not slide, or if no
+    /// observable changes from one side to the other.
     ///
     /// They are those of Filippov's combination: for a body held by friction, zero acceleration and the friction
     /// force that holds it. The motion slides if f leads back to the surface from both sides and reaches it within a
@@ -390,7 +391,7 @@ impl Switches {
     /// to `columns`.
     ///
     /// # Errors
-    /// As [`Sliding::of`]; also if f is not a sum of the changes at these surfaces.
+    /// As for [`Sliding::of`]; also if f is not the sum of the changes at these surfaces.
     fn expand_sliding(
         &mut self,
         sides: &[f64],
@@ -426,7 +427,8 @@ impl Switches {
         Ok(series)
     }
 
-    /// The program of the motion along `surfaces`, out of `len` in all; none if f is not a program.
+    /// The program of the motion along `surfaces`, which are some of the `len` surfaces; none if f is not a
+    /// single program.
     fn program_along(&self, surfaces: &[usize], len: usize) -> Option<Program> {
         let program = self.motion.program_of_rates()?;
         let (dim, first) = (program.state_len(), self.motion.parameters.len() - len);

@@ -11,7 +11,7 @@ use crate::system::system::System;
 pub struct Constraint<'g> {
     pub(super) name: String,
     pub(super) expression: Expr<'g>,
-    /// Whether g need not be affine in η.
+    /// Whether g is allowed not to be affine in η.
     pub(super) nonlinear: bool,
 }
 
@@ -47,7 +47,7 @@ impl<'g> Constraint<'g> {
         Constraint { name: name.into(), expression, nonlinear: true }
     }
 
-    /// Whether it was declared [nonlinear](Constraint::nonlinear).
+    /// Whether the constraint was declared [nonlinear](Constraint::nonlinear).
     pub fn is_nonlinear(&self) -> bool {
         self.nonlinear
     }
@@ -57,7 +57,7 @@ impl<'g> Constraint<'g> {
         &self.name
     }
 
-    /// The vanishing expression.
+    /// The expression that vanishes.
     pub fn expression(&self) -> Expr<'g> {
         self.expression
     }

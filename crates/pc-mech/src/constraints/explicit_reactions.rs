@@ -1,4 +1,4 @@
-//! Reactions as functions of the state, with which constraints of any kind enter the equations for all
+//! Reactions as functions of the state, which bring constraints of any kind into the equations for all
 //! velocities.
 
 use pc_algebra::Matrix;
@@ -36,7 +36,7 @@ impl<'g> Multipliers<'g> {
     ///
     ///   (C M⁻¹ Cᵀ) λ = −ċ − C M⁻¹ r,   ċ = (∂g/∂x) ẋ + ∂g/∂t,
     ///
-    /// m of them, in terms of (t, x, η). They keep g constant, whatever its value.
+    /// m of them, in terms of (t, x, η). These reactions keep g constant, whatever its value.
     ///
     /// ```
     /// use pc_mech::{Constraint, Graph, System};
@@ -85,7 +85,7 @@ impl<'g> Multipliers<'g> {
 
     /// The system of all velocities on which the [reactions](Multipliers::reactions_of_state) act as forces
     /// Q_s + C_αs λ_α of the state: its equations (9) are the equations of motion, in every form, and the constraints
-    /// are integrals. Their numerical errors are not corrected.
+    /// are integrals. Numerical drift from the constraints is not corrected.
     ///
     /// # Errors
     /// As for [`reactions_of_state`](Multipliers::reactions_of_state).

@@ -13,7 +13,7 @@ pub struct SourceFunction<'g> {
 
 impl<'g> SourceFunction<'g> {
     /// A function with this name, which must be an identifier, that writes these values, each given with a
-    /// word for its meaning. They may contain the [symbols of the
+    /// word for its meaning. The values may contain the [symbols of the
     /// accelerations](crate::System::accelerations). The purpose is used as the end of a sentence that begins
     /// with “Writes”.
     pub fn new(

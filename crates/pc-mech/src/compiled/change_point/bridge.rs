@@ -12,11 +12,11 @@ use crate::compiled::motion::Motion;
 use crate::compiled::point::Point;
 use crate::error::{ConstraintError, MechError};
 
-/// If the least pivot is below this, a state where it vanishes is looked for ahead, since steps get short
-/// there.
+/// If the least pivot is below this, the motion ahead is searched for a state where the pivot vanishes, since
+/// steps get short there.
 const NEAR: f64 = 0.1;
 
-/// How many steps ahead such a state is looked for.
+/// The number of steps ahead that are searched for such a state.
 const STEPS_AHEAD: f64 = 5.0;
 
 /// A least pivot below this is treated as rounding error: positions are known to 1e-16, directions only to this
@@ -29,7 +29,7 @@ const MAGNIFIED: f64 = 1e-11;
 const LARGEST_ERROR: f64 = 1e-8;
 
 /// The error up to which a step across the loss of rank is confirmed, the tolerance of the smooth motion
-/// compared with it, and the smallest fraction of its length that is tried.
+/// compared with it, and the smallest fraction of the step's length that is tried.
 const CONFIRMED: f64 = 1e-3;
 const COARSE: f64 = 1e-6;
 const SHORTEST: f64 = 1.0 / 256.0;
@@ -163,7 +163,8 @@ impl Motion {
         !has_derivatives && !breaks && !self.watch.refuses && self.switches.is_none()
     }
 
-    /// Whether a step follows the smooth motion, if rank may have been lost between its ends.
+    /// Whether a step follows the smooth motion, if the constraints may have lost rank between the ends of
+    /// the step.
     fn passes(&mut self, from: (f64, &[f64]), to: (f64, &[f64]), rates: &mut Rates<'_>) -> bool {
         let (mut t, mut y) = (from.0, from.1.to_vec());
         let (mut length, mut is_lost) = (to.0 - from.0, false);

@@ -157,7 +157,7 @@ impl Collocation {
     }
 }
 
-/// The larger of two numbers; NaN if one of them is NaN (f64::max would lose it).
+/// The larger of two numbers; NaN if one of them is NaN, whereas f64::max would return the other.
 fn larger(a: f64, b: f64) -> f64 {
     if a > b || a.is_nan() { a } else { b }
 }

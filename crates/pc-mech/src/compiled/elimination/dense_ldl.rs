@@ -20,7 +20,7 @@ const DEPENDENT: f64 = 1e-13;
 #[derive(Clone, Debug)]
 pub(crate) struct DenseLdl {
     matrix: Mat<f64>,
-    /// The sizes with which pivots are compared: the diagonal of M unless others are given.
+    /// The sizes against which pivots are compared: the diagonal of M unless others are given.
     sizes: Vec<f64>,
     pivots: Vec<f64>,
     scratch: Vec<MaybeUninit<u8>>,

@@ -96,7 +96,7 @@ impl Staged {
         &self.cost
     }
 
-    /// The same system, which takes w from `schur` where only w is needed.
+    /// The same system, with w computed by `schur` where only w is needed.
     pub(crate) fn by_joints(self, schur: Schur) -> Staged {
         Staged { schur: Some(Box::new(schur)), ..self }
     }

@@ -49,8 +49,8 @@ fn closely(pivots: &[f64], sizes: &[f64], largest: f64) -> Result<(), Evaluation
     }
 }
 
-/// The layout of the pivots: which of them and of their sizes change with the state. Both form one list: the
-/// pivots, then as many sizes.
+/// The layout of the pivots: which pivots, and which of their sizes, change with the state. One list contains
+/// all pivots, followed by as many sizes.
 #[derive(Debug)]
 pub(crate) struct PivotPartition {
     /// The index of the quasi-velocity of each pivot.
@@ -58,7 +58,7 @@ pub(crate) struct PivotPartition {
     /// The indices of the numbers that change with the state, and how many of them are pivots.
     moving: Vec<usize>,
     moving_pivots: usize,
-    /// The indices of the numbers that do not.
+    /// The indices of the numbers that do not change with the state.
     fixed: Vec<usize>,
 }
 
@@ -111,8 +111,8 @@ impl PivotPartition {
     }
 }
 
-/// The pivots of M and the sizes with which they are compared. Those that depend on parameters alone are
-/// computed once for their values.
+/// The pivots of M and the sizes with which they are compared. Pivots and sizes that depend on parameters
+/// alone are computed once for given values of the parameters.
 #[derive(Clone, Debug)]
 pub(crate) struct Pivots {
     partition: Arc<PivotPartition>,

@@ -29,7 +29,7 @@ const ONE_ROUNDING: f64 = 0.125;
 const ROUNDINGS: f64 = 4.0;
 
 /// With spare constraints, a step this short relative to the state is treated as rounding error: the active
-/// constraints may determine it a hundred times less accurately than others would.
+/// constraints may determine the state a hundred times less accurately than others would.
 const ROUNDING: f64 = 1e-12;
 
 /// A step this short relative to the state is treated as rounding error where the error of f has no bound, at
@@ -185,7 +185,7 @@ impl Surface {
     /// # Errors
     /// [`EvaluationFailure::NoProjection`] if no step leads closer, [`EvaluationFailure::Constraint`] where
     /// the surface is singular, [`EvaluationFailure::Departed`] where a condition that should follow from the
-    /// constraints does not.
+    /// constraints does not hold.
     pub(crate) fn project(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), EvaluationFailure> {
         self.factorise(t, y, p)?;
         if !self.places.is_empty() {
@@ -261,7 +261,8 @@ impl Surface {
     ///
     /// Steps are measured by δπ, in the metric given by the diagonal of M, and so independently of the units of
     /// f. A state is on the surface where f is within the bound of its rounding errors, where a step changes no
-    /// digit, or where a step is no longer than such errors would make it: then one last full step is taken.
+    /// digit, or where a step is no longer than such errors alone could make it: then one last full step is
+    /// taken.
     pub(super) fn project_part(
         &mut self,
         part: Part,

@@ -10,7 +10,7 @@ use crate::numeric::least_squares::LeastSquares;
 /// A combination of rows this small relative to the rows is treated as rounding error.
 pub(super) const DEPENDENT: f64 = 1e-12;
 
-/// The same bound near states where constraints become dependent.
+/// The corresponding bound near states where constraints become dependent.
 pub(super) const NEARLY_DEPENDENT: f64 = 1e-7;
 
 /// A step this short relative to the state is treated as rounding error.

@@ -20,8 +20,8 @@ const UNCERTAIN: f64 = 1.0 / 64.0;
 const PROBES: u64 = 8;
 const LAST_DIGITS: f64 = 8.0 * f64::EPSILON;
 
-/// The number of steps along which an integral is tested, each twice the one before; the first changes the
-/// state by about this fraction, with an error far below [`RATE`].
+/// The number of steps along which an integral is tested, each twice as long as the one before; the first
+/// step changes the state by about this fraction, with an error far below [`RATE`].
 const STEPS: usize = 8;
 const FIRST_STEP: f64 = 1e-4;
 
@@ -63,9 +63,10 @@ impl<'g> Multipliers<'g> {
 }
 
 impl Motion {
-    /// The same motion with a further [projection](pc_expr::VectorField::project), after that to its
-    /// constraints: to the values of these integrals at (t, y), by the shortest path in the components of the
-    /// state. Applied after each step, it changes the state by at most the error of the step.
+    /// The same motion with a further [projection](pc_expr::VectorField::project), which comes after the
+    /// projection onto its constraints: it moves the state, by the shortest path in its components, to where
+    /// these integrals have their values at (t, y). Applied after each step, it changes the state by at most
+    /// the error of the step.
     ///
     /// An integral is not kept at states where its gradient is linearly dependent on those before it, such as
     /// the energy at rest. A quantity that may jump along the motion is refused: keeping it would change the
@@ -102,7 +103,7 @@ impl Motion {
     }
 
     /// Makes the values at (t, y) those to be [kept](Motion::keep) from now on: for another initial state, or
-    /// with other parameters.
+    /// for other values of the parameters.
     ///
     /// # Errors
     /// As for [`keep`](Motion::keep).
@@ -160,7 +161,8 @@ impl Motion {
     }
 
     /// Whether the rate of change of an integral at (t, y) is due to rounding errors in ẏ: it then changes with
-    /// the last digits of the state and of the equations. Those changes are the same on every run.
+    /// the last digits of the state and of the equations. The changes made to the last digits are the same on
+    /// every run.
     fn is_uncertain(
         &mut self,
         integrals: &mut KeptIntegrals,
@@ -183,7 +185,7 @@ impl Motion {
         })
     }
 
-    /// The same motion, projected to its constraints alone.
+    /// The same motion, projected onto its constraints alone.
     pub fn without_kept(mut self) -> Motion {
         self.set_kept(None);
         self

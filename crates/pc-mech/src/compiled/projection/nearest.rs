@@ -63,8 +63,9 @@ impl Surface {
     ///
     ///   M (η − η₀) = Cᵀ μ.
     ///
-    /// Each step to g = 0 is the shortest, but the steps together are not, and their path depends on
-    /// the choice of quasi-velocities. Where g is affine in η a single step leads to the nearest point.
+    /// Each step to g = 0 is the shortest possible, but the path that the steps make up is not, and it
+    /// depends on the choice of quasi-velocities. Where g is affine in η a single step leads to the nearest
+    /// point.
     fn approach(
         &mut self,
         given: &[f64],

@@ -1,4 +1,5 @@
-//! Velocities that satisfy the constraints, some of which keep their values as far as the constraints allow.
+//! Velocities that satisfy the constraints; some of the velocities keep their values as far as the
+//! constraints allow.
 
 use pc_algebra::Matrix;
 
@@ -18,7 +19,7 @@ impl Surface {
     /// those that change the held ones least, and of these the shortest, in the kinetic metric.
     ///
     /// # Errors
-    /// [`EvaluationFailure::NoProjection`] if no such steps lead there.
+    /// [`EvaluationFailure::NoProjection`] if no such steps lead to g = 0.
     pub(crate) fn project_velocities_holding(
         &mut self,
         (t, y, p): (f64, &mut [f64], &[f64]),
