@@ -77,7 +77,7 @@ impl<'g> Acceleration<'g> {
     }
 }
 
-/// The equations of a tree: with τ, the components of Q + X U on its joints, link by link.
+/// The equations of a tree, with τ: the components of Q + X U on its joints, link by link.
 #[derive(Clone, Debug)]
 pub(crate) struct TreeDynamics<'g> {
     graph: &'g Graph,

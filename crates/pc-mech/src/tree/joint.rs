@@ -7,8 +7,8 @@ use crate::tree::spatial::{Tensor, Vector, ZERO, entries_of, unit};
 
 /// A joint: how a body moves relative to its parent.
 ///
-/// It is at a point of the parent, with axes of its own. The origin of the body is the point of the joint, and
-/// the axes of the body coincide with those of the joint when all coordinates of the joint vanish.
+/// A joint is at a point of the parent, and has axes of its own. The origin of the body is the point of the
+/// joint, and the axes of the body coincide with those of the joint when all coordinates of the joint vanish.
 ///
 /// | kind | movement of the body | coordinates, quasi-velocities of a body `arm` |
 /// |---|---|---|
@@ -24,7 +24,7 @@ use crate::tree::spatial::{Tensor, Vector, ZERO, entries_of, unit};
 #[derive(Clone, Debug)]
 pub struct Joint<'g> {
     pub(crate) kind: Kind<'g>,
-    /// The point of the joint, along the axes of the parent from its origin.
+    /// The point of the joint, relative to the parent's origin and along the parent's axes.
     pub(crate) place: Vector<'g>,
     /// The rotation from the axes of the joint to those of the parent.
     pub(crate) rotation: Tensor<'g>,
@@ -97,7 +97,7 @@ impl<'g> Joint<'g> {
         Joint::of(Kind::Free)
     }
 
-    /// The same joint at a point given along the axes of the parent from its origin.
+    /// The same joint at a point whose components, from the parent's origin, are along the parent's axes.
     #[must_use]
     pub fn at(self, place: [impl Into<Expr<'g>>; 3]) -> Joint<'g> {
         Joint { place: place.map(Into::into), ..self }
@@ -113,7 +113,7 @@ impl<'g> Joint<'g> {
         Joint { rotation: entries_of(rotation), ..self }
     }
 
-    /// The same joint with other names of its coordinates and quasi-velocities.
+    /// The same joint with other names for its coordinates and quasi-velocities.
     #[must_use]
     pub fn named<S: Into<String>>(
         self,

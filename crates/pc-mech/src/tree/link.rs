@@ -36,8 +36,8 @@ pub(crate) enum Hinge<'g> {
         quaternion: [Expr<'g>; 4],
         omega: Vector<'g>,
     },
-    /// Moves freely: the origin is at `way` along the axes of the joint, and has the velocity v relative to
-    /// the parent, along the axes of the link.
+    /// Moves freely: `way` is the position of the origin along the axes of the joint; its velocity v relative
+    /// to the parent is along the axes of the link.
     Free {
         way: Vector<'g>,
         quaternion: [Expr<'g>; 4],

@@ -1,4 +1,4 @@
-//! The motion of bodies with a frame, and their contributions to a system.
+//! How bodies move as functions of a frame, and what they contribute to a system.
 
 use pc_algebra::Frame;
 use pc_expr::{Expr, SymbolPlaces};
@@ -15,7 +15,7 @@ pub(crate) struct Share<'g> {
     pub(crate) forces: Vec<Expr<'g>>,
     /// The force function U(t, x), which is a term of L.
     pub(crate) force_function: Expr<'g>,
-    /// Whether each component of the force is included in U.
+    /// For each component of the force, whether it is included in U.
     pub(crate) in_lagrangian: Vec<bool>,
     /// ṙ
     pub(crate) velocity: Vec<Expr<'g>>,
@@ -53,7 +53,8 @@ impl<'a, 'g> Moving<'a, 'g> {
     ///
     /// # Errors
     /// [`BodyError::OfVelocities`] if the functions depend on velocities,
-    /// [`FrameError::OfState`](crate::FrameError::OfState) if they depend on first-order states; `what` is their name.
+    /// [`FrameError::OfState`](crate::FrameError::OfState) if they depend on first-order states; messages call the
+    /// functions `what`.
     pub(crate) fn operators(
         &self,
         what: &'static str,
