@@ -122,7 +122,7 @@ impl<'g> Elimination<'g> {
         })
     }
 
-    /// The terms of Y^D − A_DI Y^I, for a field Y given by the terms of its components.
+    /// The terms of Y^D − A_DI Y^I, for a vector field Y given by the terms of its components.
     fn outside(&self, field: &[Vec<Expr<'g>>]) -> Vec<Vec<Expr<'g>>> {
         let row = |(d, &m): (usize, &usize)| -> Vec<Expr<'g>> {
             let carried = self.matrix.nonzero(d).map(|(i, a)| (self.free[i], a));

@@ -14,8 +14,8 @@ impl LieAlgebra {
     /// A basis of the linear forms ξ with ξ([x, y]) = 0: the solutions of c_rs^m ξ_m = 0, the annihilator of
     /// \[g, g\].
     ///
-    /// They are the characters of the algebra, not Casimir functions of the momenta. Entries are coprime
-    /// integers.
+    /// These forms are the characters of the algebra, not Casimir functions of the momenta. Entries are
+    /// coprime integers.
     ///
     /// # Errors
     /// [`AlgebraError::NotRational`].

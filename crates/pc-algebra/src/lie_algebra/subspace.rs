@@ -18,8 +18,8 @@ impl Subspace {
     /// The span of vectors of length `ambient`.
     ///
     /// # Errors
-    /// [`AlgebraError::Shape`] for a vector of another length, [`AlgebraError::IrrationalEntry`] for an entry
-    /// that is not rational (the vectors count as rows).
+    /// [`AlgebraError::Shape`] for a vector of a different length, [`AlgebraError::IrrationalEntry`] for an
+    /// entry that is not rational (the vectors count as rows).
     ///
     /// ```
     /// # use pc_algebra::Subspace;

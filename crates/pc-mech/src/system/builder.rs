@@ -335,9 +335,9 @@ impl<'g> SystemBuilder<'g> {
     }
 
     /// Declares that forces that the caller computes, such as those of a controller, act on the quasi-velocities
-    /// with these names. Each such Q_s gets a further term, a symbol; if the equations are [compiled
-    /// with](crate::Equations::compile_forced) an [`ExternalForce`](crate::ExternalForce), this gives the values of
-    /// the symbols, in the order of declaration.
+    /// with these names. Each such Q_s gets a further term, a symbol; an [`ExternalForce`](crate::ExternalForce)
+    /// with which the equations are [compiled](crate::Equations::compile_forced) gives the values of the symbols,
+    /// in the order of declaration.
     #[must_use]
     pub fn external_force<S: Into<String>>(mut self, quasi_velocities: impl IntoIterator<Item = S>) -> Self {
         for name in quasi_velocities.into_iter().map(Into::into) {

@@ -7,10 +7,10 @@ use crate::tree::spatial::{Tensor, Vector};
 /// An elementary movement of a joint, between two sets of axes. Bodies can be fixed to the second.
 #[derive(Clone, Debug)]
 pub(crate) struct Link<'g> {
-    /// The link to which it is attached; `None` for the world.
+    /// The link to which this one is attached; `None` for the world.
     pub(crate) parent: Option<usize>,
-    /// The position of its origin when its coordinates vanish, and the matrix from its axes to those of the
-    /// parent in that position.
+    /// The position of the link's origin when its coordinates vanish, and the matrix from the link's axes to
+    /// the parent's in that position.
     pub(crate) place: Vector<'g>,
     pub(crate) rotation: Tensor<'g>,
     pub(crate) hinge: Hinge<'g>,

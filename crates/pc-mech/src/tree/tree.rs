@@ -15,7 +15,7 @@ use crate::tree::spatial::{
 
 /// Bodies joined by joints: one or more trees attached to the world.
 ///
-/// Its coordinates are those of the joints, in the order in which the bodies are declared; its
+/// The coordinates of the tree are those of the joints, in the order in which the bodies are declared; its
 /// quasi-velocities are velocities of a body relative to its parent. The velocities of a body follow from
 /// those of its parent,
 ///

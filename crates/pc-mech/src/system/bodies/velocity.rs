@@ -44,7 +44,7 @@ pub(crate) struct Bodies<'g> {
 }
 
 impl<'g> Bodies<'g> {
-    /// The same bodies with `put` applied to every expression, including those of the Lagrangian.
+    /// The same bodies with `put` applied to every expression, including the rest of the Lagrangian.
     pub(crate) fn map<'n>(&self, put: impl Fn(&[Expr<'g>]) -> Vec<Expr<'n>>) -> Bodies<'n> {
         let moved = |body: &BodyVelocity<'g>| BodyVelocity {
             name: body.name.clone(),
