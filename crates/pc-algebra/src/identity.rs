@@ -1,4 +1,4 @@
-//! Verdicts on identities, including those that the graph does not decide: proved, open, disproved.
+//! Verdicts on identities, including identities that the graph does not decide: proved, open, or disproved.
 //!
 //! `identity` is the verdict; `sample` evaluates expressions at pseudo-random points near a state, with
 //! numbers that distinguish a small value from the rounding error of zero ([`Weighed`](pc_expr::Weighed));

@@ -20,9 +20,9 @@ impl<'g> Frame<'g> {
     ///
     /// If rank b = k, the coefficients solve b c_rs = [X_r, X_s] in the least-squares sense, c_rs =
     /// (bᵀb)⁻¹bᵀ[X_r, X_s]. If rank b < k, least squares would lose the part of c along ker b; so coefficients
-    /// are sought that hold at all points and depend only on parameters and time. The frame determines them if
-    /// no combination of the operators with such coefficients vanishes. In both cases the result reproduces
-    /// every commutator.
+    /// are sought that hold at all points and depend only on parameters and time. The frame determines these
+    /// coefficients if no combination of the operators with coefficients of this kind vanishes. In both cases
+    /// the result reproduces every commutator.
     ///
     /// `near` is a neighbourhood in which the expressions of the frame are regular.
     ///
@@ -176,7 +176,7 @@ impl<'g> Frame<'g> {
     /// The left inverse (bᵀWb)⁻¹bᵀW with the [weights](Self::weights) W of the coordinates, or b⁻¹ if b is
     /// square; `None` if rank b < k.
     ///
-    /// Coordinates that [follow](Self::followers) others are left out, because if the remaining b is square,
+    /// Coordinates that [follow](Self::followers) others are left out, because, if the remaining b is square,
     /// b⁻¹ is as accurate as b itself, while bᵀb squares the condition number of b and, with rounded
     /// constants, hides cancellations.
     pub(crate) fn left_inverse(&self) -> Option<Matrix<Expr<'g>>> {
@@ -203,8 +203,8 @@ impl<'g> Frame<'g> {
     }
 
     /// The weights of the coordinates. Most weights are 1. Coordinates in whose units the velocities are so
-    /// small that bᵀb would lose them among the others have powers of 2, and coordinates whose velocities are
-    /// only rounding errors have 0.
+    /// small that bᵀb would lose them among the others are weighted with powers of 2, and coordinates whose
+    /// velocities are only rounding errors with 0.
     fn weights(&self) -> Vec<Expr<'g>> {
         const SMALL: f64 = 1e-3;
         let (b, k) = (self.b(), self.operators());

@@ -27,7 +27,7 @@ pub struct Elimination<'g> {
 
 impl<'g> Frame<'g> {
     /// The frame after elimination of the operators `dependent`, numbered from 0, by η_D = A_DI η_I + A_D0. I
-    /// are the others in order, `matrix` is A_DI and `drift` is A_D0.
+    /// are the other operators in order, `matrix` is A_DI, and `drift` is A_D0.
     ///
     /// # Errors
     /// [`AlgebraError::Shape`]

@@ -6,7 +6,7 @@ use pc_expr::{Expr, Weighed};
 use crate::frame::frame::Frame;
 use crate::identity::sample::{Neighbourhood, TRIALS};
 
-/// Whether the velocities that a frame allows, ẋ = b η + b_0 (3), are those of motions on submanifolds.
+/// Whether the velocities ẋ = b η + b_0 (3) that a frame allows are velocities of motions on submanifolds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Integrability {
     /// All [X_r, X_s], r, s = 0..k, are in the span of X_1..X_k at almost every point.

@@ -16,7 +16,7 @@ const AT_REST: f64 = 1e-9;
 const SLOPE: f64 = 1e-4;
 
 /// A determinant that falls to this fraction of its values at both ends of a step is taken to vanish between
-/// them: a step that resolves the motion contains no such dip otherwise.
+/// the ends: otherwise a step that resolves the motion contains no such dip.
 const VANISHES: f64 = 1e-6;
 
 /// The number of halvings or golden-section steps within a step: they end at about 1e-9 of its length.
@@ -67,7 +67,7 @@ impl Chart {
     }
 
     /// The chart of a system all of whose quasi-velocities, in order, are transformed by the matrix A: it
-    /// watches det A a if they are defined in terms of ẋ, and det A otherwise.
+    /// watches det A a if the quasi-velocities are defined in terms of ẋ, and det A otherwise.
     ///
     /// # Errors
     /// [`MechError`] for a symbol without a value.
@@ -200,7 +200,7 @@ impl Chart {
     }
 
     /// Whether a motion with these velocities, past such a zero or pole, is at rest in the undetermined
-    /// direction: it then continues uniquely. False if the columns are not those of ẋ.
+    /// direction: it then continues uniquely. False if the columns of the matrix do not belong to ẋ.
     pub(crate) fn rests(
         &mut self,
         passage: Passage,

@@ -80,7 +80,7 @@ impl<'g> FirstOrder<'g> {
         }
     }
 
-    /// The number of operations of ẏ when it is written out.
+    /// The number of operations needed to compute ẏ when it is written out.
     fn operations(&self) -> usize {
         let unknowns = self.solve(&self.factors());
         let values: Vec<_> = self.unknowns.iter().copied().zip(unknowns).collect();
@@ -181,13 +181,13 @@ impl<'g> Equations<'g> {
     }
 
     /// Inverse dynamics: the k generalised forces M η̇ − r that have to be added to Q to obtain the
-    /// accelerations η̇, whose [symbols](crate::System::accelerations) they contain. For a large tree they
-    /// are computed body by body, in O(N).
+    /// accelerations η̇, whose [symbols](crate::System::accelerations) they contain. For a large tree the
+    /// forces are computed body by body, in O(N) operations.
     pub fn inverse_dynamics(&self) -> Vec<Expr<'g>> {
         self.written_first_order().balance().into_iter().map(|left| -left).collect()
     }
 
-    /// The first-order system; that of a tree is solved joint by joint if that takes fewer operations.
+    /// The first-order system; for a tree it is solved joint by joint if that takes fewer operations.
     pub(crate) fn shortest_first_order(&self, elimination: TreeElimination) -> FirstOrder<'g> {
         let Some(tree) = self.system.tree.as_ref().filter(|_| elimination != TreeElimination::Whole) else {
             return self.first_order();

@@ -38,7 +38,7 @@ pub struct ForcedMotion<F> {
     force: F,
     /// The quasi-velocities on which the forces act.
     names: Vec<String>,
-    /// The number of parameters; the forces follow them.
+    /// The number of parameters; the forces come after them.
     parameters: usize,
     /// q
     values: Vec<f64>,
@@ -101,7 +101,7 @@ impl Multipliers<'_> {
     }
 }
 
-/// The options, extended by ∂f/∂q if a Jacobian needs it.
+/// The options, with ∂f/∂q added if a Jacobian needs it.
 fn derived(options: CompileOptions) -> CompileOptions {
     options.parameter_jacobian(options.parameter_jacobian || options.jacobian || options.jvp)
 }
@@ -144,7 +144,7 @@ impl<F: ExternalForce> ForcedMotion<F> {
         motion.forced(external.iter().map(|(name, _)| name.clone()).collect(), force)
     }
 
-    /// The motion as a function of the forces, which follow its parameters.
+    /// The motion as a function of the forces, which come after its parameters.
     pub fn motion(&self) -> &Motion {
         &self.motion
     }
@@ -186,8 +186,8 @@ impl<F: ExternalForce> ForcedMotion<F> {
         self.motion.constraint_residuals(t, y)
     }
 
-    /// The observables at (t, y), as [`Motion::observe`] gives them; those that contain a force that cannot be
-    /// computed are not finite.
+    /// The observables at (t, y), as [`Motion::observe`] gives them; observables that contain a force that
+    /// cannot be computed are not finite.
     ///
     /// # Panics
     /// If `y` does not have the length of the state.
@@ -218,7 +218,7 @@ impl<F: ExternalForce> ForcedMotion<F> {
         self.motion.watch(t, y, values, false);
     }
 
-    /// Writes the residual of each constraint at (t, y), as [`Motion::constraint_residuals_to`] does.
+    /// Writes the residual of each constraint at (t, y), like [`Motion::constraint_residuals_to`].
     ///
     /// # Panics
     /// As there.

@@ -27,8 +27,8 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// So |F| falls, w stays in the domain of p, and p approaches r on a nearly straight line, which keeps w away
 /// from the boundary of the domain until the end.
 ///
-/// Every solution starts from the same guess, so that w depends on (t, y) only, to the last bit; only if that
-/// fails does the iteration start from the last solution.
+/// Every solution starts from the same guess, so that w depends on (t, y) only, to the last bit; only if the
+/// iteration fails does it start again from the last solution.
 #[derive(Clone, Debug)]
 pub(crate) struct Newton {
     /// Computes, from (t, (y, w)), the nonzero entries of the lower triangle of M, then p, then r.

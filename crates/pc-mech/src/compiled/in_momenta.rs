@@ -22,8 +22,8 @@ impl Multipliers<'_> {
     ///
     ///   ẏ_s = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α,   ẋ = b η + b_0,   C η + c_0 = 0.
     ///
-    /// No velocities are chosen as independent, so a position is singular only where the constraints themselves are.
-    /// Its projection, observables and [kept](Motion::keep) integrals are the same as with
+    /// No velocities are chosen as independent, so a position is singular only where the constraints themselves are
+    /// singular. Its projection, observables and [kept](Motion::keep) integrals are the same as with
     /// [`compile_for`](Multipliers::compile_for); integrals to be kept must be integrals of the equations with these
     /// multipliers. Products with the Jacobian are not available.
     ///
@@ -151,7 +151,7 @@ impl InMomenta {
         }
     }
 
-    /// The steep functions of the coordinates, which both motions have in common.
+    /// The steep functions of the coordinates, which are the same for both motions.
     pub(crate) fn steep_functions(&self) -> Option<SteepFunctions> {
         self.inner.steep_functions()?.of_components(self.inner.coordinates)
     }

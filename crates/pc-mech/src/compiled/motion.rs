@@ -114,7 +114,7 @@ pub(super) struct Slopes {
 pub(crate) struct Switches {
     /// The functions that vanish on the surfaces, as text.
     pub(super) names: Vec<String>,
-    /// The motion with the sides as further parameters, after those of the system.
+    /// The motion with the sides as further parameters, which come after the parameters of the system.
     pub(super) motion: Box<Motion>,
     /// g from (t, y, p, sides).
     pub(super) functions: Evaluator,
@@ -320,8 +320,8 @@ impl Motion {
         Ok(Motion { charts: Chart::of(system)?.into_iter().collect(), ..self })
     }
 
-    /// The motion in other quasi-velocities η' = A η + A_0, with A for all those of the system, in order; it
-    /// also does not lead past a state where η' do not determine η.
+    /// The motion in other quasi-velocities η' = A η + A_0, with A for all quasi-velocities of the system, in
+    /// order; the new motion also does not lead past a state where η' does not determine η.
     ///
     /// # Errors
     /// As there.
@@ -333,8 +333,8 @@ impl Motion {
         Ok(Motion { charts: Chart::of_change(system, change)?.into_iter().collect(), ..self })
     }
 
-    /// The motion in independent quasi-velocities of a system; it also does not lead past a state where this
-    /// square matrix, through which constraints determine the others, is singular.
+    /// The motion in independent quasi-velocities of a system; the new motion also does not lead past a state
+    /// where this square matrix, through which constraints determine the others, is singular.
     ///
     /// # Errors
     /// As there.
@@ -347,7 +347,7 @@ impl Motion {
         Ok(self)
     }
 
-    /// The motion with momenta of these names.
+    /// The motion whose momenta have these names.
     pub(crate) fn of_momenta(mut motion: InMomenta, names: impl Iterator<Item = String>) -> Motion {
         motion.inner_mut().switches = None; // those of the momenta are not derived
         let inner = motion.inner();
@@ -406,7 +406,8 @@ impl Motion {
         Motion { constraints, surface: Some(Box::new(surface)), ..self }
     }
 
-    /// Makes the motion project to the values of these integrals from now on; returns the previous integrals.
+    /// Makes the motion project onto the values of these integrals from now on; returns the previous
+    /// integrals.
     pub(crate) fn set_kept(&mut self, integrals: Option<KeptIntegrals>) -> Option<KeptIntegrals> {
         if let Form::InMomenta(motion) = &mut self.form {
             return motion.inner_mut().set_kept(integrals);

@@ -106,7 +106,8 @@ impl Measured {
 }
 
 /// An expression with a first-order bound on its rounding errors, in units of the last digit of 1.0. The bound
-/// is at least the absolute value, so that the rounding errors of sums are included in those of their terms.
+/// is at least the absolute value, so that the rounding errors of sums are included in the bounds for their
+/// terms.
 #[derive(Clone, Copy)]
 struct WithError<'g> {
     value: Expr<'g>,

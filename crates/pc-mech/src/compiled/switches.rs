@@ -203,9 +203,9 @@ impl Switches {
     /// Writes the observables where the motion slides along a surface at (t, y); false if it does not slide, or if no
     /// observable changes from one side to the other.
     ///
-    /// They are those of Filippov's combination: for a body held by friction, zero acceleration and the friction
-    /// force that holds it. The motion slides if f leads back to the surface from both sides and reaches it within a
-    /// time as short as a rounding error.
+    /// These observables are those of Filippov's combination: for a body held by friction, zero acceleration and the
+    /// friction force that holds it. The motion slides if f leads back to the surface from both sides and reaches it
+    /// within a time as short as a rounding error.
     pub(crate) fn observe(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> bool {
         if self.observing.is_none() {
             return false;
@@ -223,7 +223,8 @@ impl Switches {
         true
     }
 
-    /// The sides of all surfaces at (t, y), σ for those along which the motion slides; none if it does not slide.
+    /// The sides of all surfaces at (t, y), σ for surfaces along which the motion slides; none if it does not
+    /// slide.
     fn weights(&mut self, t: f64, y: &[f64]) -> Option<Vec<f64>> {
         let mut functions = vec![f64::NAN; self.names.len()];
         let mut sides = vec![1.0; self.names.len()];

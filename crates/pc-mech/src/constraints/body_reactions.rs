@@ -55,11 +55,12 @@ impl<'g> Multipliers<'g> {
     ///
     ///   Σ (F · ∂ṙ/∂η_s + N · ∂ω/∂η_s) = λ_α C_αs,   s = 1..k.
     ///
-    /// This determines the force on a body if ṙ can be varied independently of the velocities of all other
-    /// bodies, of its own ω, and of other velocities in the kinetic energy: the rank of the derivatives of all
-    /// of these with respect to η must be the rank of ∂ṙ/∂η plus the rank of the other derivatives. The force
-    /// is determined up to a part normal to all ṙ that the coordinates allow; this part is left out, since it
-    /// belongs to the supports implied by the coordinates. The same holds for torques, with ω in place of ṙ.
+    /// The condition determines the force on a body if ṙ can be varied independently of the velocities of all
+    /// other bodies, of its own ω, and of other velocities in the kinetic energy: the rank of the derivatives
+    /// of all of these with respect to η must be the rank of ∂ṙ/∂η plus the rank of the other derivatives. The
+    /// force is determined up to a part normal to all ṙ that the coordinates allow; this part is left out,
+    /// since it belongs to the supports implied by the coordinates. The same holds for torques, with ω in
+    /// place of ṙ.
     ///
     /// If the choice of coordinates ties velocities together, as the angle of a rod does for two masses on it,
     /// the forces between them are not reactions of constraints, and virtual work does not determine how they

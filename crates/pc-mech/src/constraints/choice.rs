@@ -32,8 +32,9 @@ impl<'g> Multipliers<'g> {
     /// [independent](Multipliers::in_independent_velocities) ones.
     ///
     /// # Errors
-    /// [`ConstraintError::NotIndependent`] if their number is wrong, one does not belong to the system, or they do not
-    /// determine the others at the values `at` of time, coordinates, quasi-velocities and parameters.
+    /// [`ConstraintError::NotIndependent`] if the number of names is wrong, a name does not belong to the system, or
+    /// these quasi-velocities do not determine the others at the values `at` of time, coordinates, quasi-velocities
+    /// and parameters.
     ///
     /// ```
     /// use pc_mech::{Constraint, Graph, System};
@@ -84,8 +85,8 @@ impl<'g> Multipliers<'g> {
     /// conditioned constraints are taken.
     ///
     /// If there are more than 20 choices or more than 3 constraints, or the Lagrangian is long, no equations are
-    /// compared: C is then eliminated, each time with the pivot that is shortest in print among those of at least a
-    /// tenth of the largest.
+    /// compared: C is then eliminated, each time with the pivot that is shortest in print among those that are at
+    /// least a tenth of the largest.
     ///
     /// # Errors
     /// The errors of [`dependent_at`](Multipliers::dependent_at).

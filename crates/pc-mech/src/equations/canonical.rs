@@ -112,7 +112,7 @@ impl<'g> System<'g> {
     }
 }
 
-/// The solution η of M η = y − p_0, for each small block of M by cofactors over the determinant: once
+/// The solution η of M η = y − p_0, found for each small block of M from cofactors over the determinant: once
 /// expanded, the expressions look as in a book, and they are regular where M is.
 fn solution<'g>(
     graph: &'g Graph,
@@ -139,7 +139,7 @@ fn solution<'g>(
     eta
 }
 
-/// The inverse of a symmetric matrix as cofactors over the determinant, both collected.
+/// The inverse of a symmetric matrix as cofactors over the determinant, with the terms of both collected.
 fn cofactors<'g>(
     graph: &'g Graph,
     matrix: &Matrix<Expr<'g>>,

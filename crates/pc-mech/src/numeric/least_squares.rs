@@ -5,7 +5,7 @@ use pc_algebra::Matrix;
 use crate::error::MechError;
 use crate::numeric::singular_values::SingularValues;
 
-/// The equations A x = b for an m × n matrix A = U Σ Vᵀ, solved by its singular values.
+/// The equations A x = b for an m × n matrix A = U Σ Vᵀ, solved by means of the singular values of A.
 ///
 /// ```
 /// use pc_mech::{LeastSquares, Matrix};

@@ -20,8 +20,8 @@ pub trait ExternalForce {
 
     /// Writes the derivatives ∂q_i/∂y_j of the e forces to `dq[i + j * e]`; every entry has to be written.
     ///
-    /// By default these are difference quotients (q(y + h_j e_j) − q(y))/h_j of the forces alone, with h_j = √ε
-    /// max(1, |y_j|), ε the unit of rounding; the rest of the Jacobian stays exact.
+    /// By default the derivatives are difference quotients (q(y + h_j e_j) − q(y))/h_j of the forces alone,
+    /// with h_j = √ε max(1, |y_j|), ε the unit of rounding; the rest of the Jacobian stays exact.
     ///
     /// # Errors
     /// As [`force`](ExternalForce::force).

@@ -131,7 +131,7 @@ impl<'g> System<'g> {
         self.lagrangian
     }
 
-    /// The generalised forces Q_1..Q_k (8), without those that follow from L.
+    /// The generalised forces Q_1..Q_k (8), without the forces derived from L.
     pub fn forces(&self) -> &[Expr<'g>] {
         &self.forces
     }

@@ -6,8 +6,8 @@ use crate::error::{MechError, ShapeError};
 use crate::system::system::System;
 
 impl<'g> System<'g> {
-    /// The system of the first `free` quasi-velocities whose equations (9) are those of this one with the nonholonomic
-    /// constraints η_α = 0, α > `free`, in the form (32):
+    /// The system of the first `free` quasi-velocities whose equations (9) are those of the present system under the
+    /// nonholonomic constraints η_α = 0, α > `free`, in the form (32):
     ///
     ///   d/dt ∂θ/∂η_s = (c_rs^m η_r + c_0s^m) ∂θ/∂η_m + (c_rs^α η_r + c_0s^α) (∂L/∂η_α)_0 + X_s (θ + U) + Q_s,
     ///

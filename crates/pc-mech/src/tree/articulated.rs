@@ -59,7 +59,7 @@ impl<'g> Inertia6<'g> {
         self.map(|r, c, entry| graph.keep(entry + other.0[r][c]))
     }
 
-    /// The symmetric matrix with each entry on and below the diagonal replaced by `put` of it.
+    /// The symmetric matrix with `put` applied to each entry on and below the diagonal.
     fn map(&self, put: impl Fn(usize, usize, Expr<'g>) -> Expr<'g>) -> Inertia6<'g> {
         let mut mapped = *self;
         for r in 0..6 {

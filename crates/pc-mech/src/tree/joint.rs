@@ -76,7 +76,8 @@ impl<'g> Joint<'g> {
         Joint::of(Kind::Cylindrical(axis))
     }
 
-    /// A joint that turns about the first axis, then about the second, which is carried along.
+    /// A joint that turns about the first axis, then about the second, which the first rotation carries
+    /// along.
     pub fn universal(first: [f64; 3], second: [f64; 3]) -> Joint<'g> {
         Joint::of(Kind::Universal(first, second))
     }
@@ -103,7 +104,8 @@ impl<'g> Joint<'g> {
         Joint { place: place.map(Into::into), ..self }
     }
 
-    /// The same joint with other axes, given by the constant rotation from them to those of the parent.
+    /// The same joint with other axes, given by the constant rotation from the new axes to those of the
+    /// parent.
     ///
     /// # Panics
     /// If it does not have three rows and columns.

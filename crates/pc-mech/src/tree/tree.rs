@@ -231,7 +231,7 @@ impl<'g> Tree<'g> {
         self.links.len() > MANY_LINKS
     }
 
-    /// The tree with each expression replaced by `put` of it, in another graph.
+    /// The tree with `put` applied to each expression, in another graph.
     pub(crate) fn map<'n>(&self, graph: &'n Graph, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> Tree<'n> {
         let stand = |stand: &Stand<'g>| Stand {
             link: stand.link,

@@ -35,7 +35,7 @@ const COARSE: f64 = 1e-6;
 const SHORTEST: f64 = 1.0 / 256.0;
 
 /// The number of parts into which a smooth motion is divided; constraints are assumed to turn by less than a
-/// right angle in each.
+/// right angle in each part.
 const PARTS: usize = 16;
 
 /// The number of halvings by which the loss of rank is located.
@@ -57,8 +57,8 @@ enum Rank {
 pub(crate) type Rates<'a> = dyn FnMut(&mut Motion, f64, &[f64], &mut [f64]) -> Result<(), Failure> + 'a;
 
 impl Motion {
-    /// Watches the rank of the constraints from one end of a step to the other, and builds a bridge if it is about to
-    /// be lost.
+    /// Watches the rank of the constraints from one end of a step to the other, and builds a bridge if the
+    /// constraints are about to lose rank.
     ///
     /// # Errors
     /// [`RankLost`](crate::ConstraintError::RankLost) where the motion is undetermined.

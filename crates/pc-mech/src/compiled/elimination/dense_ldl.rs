@@ -79,7 +79,7 @@ impl DenseLdl {
     /// though a leading minor vanishes.
     ///
     /// # Errors
-    /// The `failure` of elimination without pivoting, if M is singular.
+    /// The given `failure`, which is that of elimination without pivoting, if M is singular.
     #[cold]
     fn eliminate_pivoted(
         &mut self,
@@ -126,7 +126,7 @@ impl DenseLdl {
         }
     }
 
-    /// Replaces each of the columns, of length k, by M⁻¹ times it.
+    /// Replaces each of the columns v, of length k, by M⁻¹ v.
     pub(crate) fn solve(&mut self, columns: &mut [f64]) {
         let k = self.sizes.len();
         if let Some(factors) = &self.pivoted {

@@ -78,7 +78,7 @@ impl PivotPartition {
         self.moving.len()
     }
 
-    /// Checks that no pivot vanishes, from the fixed numbers and the values of those that change.
+    /// Checks that no pivot vanishes, given the fixed numbers and the values of the numbers that change.
     ///
     /// # Errors
     /// [`EvaluationFailure::Pivot`] for the first pivot that vanishes.
@@ -160,7 +160,7 @@ impl Pivots {
         self.is_known = false;
     }
 
-    /// Checks that no pivot vanishes; `moving` are the values of those that change.
+    /// Checks that no pivot vanishes; `moving` are the values of the numbers that change.
     ///
     /// # Errors
     /// [`EvaluationFailure::Pivot`] for the first that vanishes.

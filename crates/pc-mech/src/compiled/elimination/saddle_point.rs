@@ -56,7 +56,8 @@ impl Saddle {
     }
 
     /// The matrix of k unknowns and m multipliers, where `rank` ≤ k rows of the constraints are independent.
-    /// The rows after the first `rank` are spare: they replace others only where those are nearly dependent.
+    /// The rows after the first `rank` are spare: they replace other rows only where the other rows are
+    /// nearly dependent.
     pub(crate) fn of_rank(k: usize, m: usize, rank: usize) -> Saddle {
         let free = k - rank;
         Saddle {
@@ -142,7 +143,7 @@ impl Saddle {
 
     /// Factorises C = L U, up to the order of rows and columns, with complete pivoting. Coefficients are compared after
     /// division by the largest of their row and by the square root of the mass of their unknown, so that units do not
-    /// matter; an unknown without mass counts as the lightest of the others.
+    /// matter; an unknown without mass is treated as if it had the smallest mass of the others.
     fn pivot(&mut self) -> Result<(), EvaluationFailure> {
         let (k, m) = (self.k, self.m);
         let (mass, constraints) = (&self.mass, &self.constraints);
@@ -349,7 +350,7 @@ mod tests {
     use super::*;
     use crate::random::numbers;
 
-    /// One symmetric matrix made of M = Nᵀ N + 1 and C, both random.
+    /// One symmetric matrix made of M = Nᵀ N + 1 and C, with random N and C.
     fn random(k: usize, m: usize, next: &mut impl FnMut() -> f64) -> Vec<Vec<f64>> {
         let n: Vec<f64> = (0..k * k).map(|_| next()).collect();
         let mut whole = vec![vec![0.0; k + m]; k + m];

@@ -34,7 +34,8 @@ pub(crate) struct Watched<'g> {
     pub(crate) size: Expr<'g>,
 }
 
-/// L D Lᵀ with L unit lower triangular in the order of elimination and D diagonal; both are indexed as M is.
+/// L D Lᵀ with L unit lower triangular in the order of elimination, and D diagonal; both have the indices of
+/// M.
 pub(crate) struct Ldl<'g> {
     order: Vec<usize>,
     /// The position of each row in the order of elimination.
@@ -113,7 +114,7 @@ impl<'g> Factors<'g> {
         }
     }
 
-    /// The nonzero entries of M⁻¹ r with their indices, from those of r.
+    /// The nonzero entries of M⁻¹ r with their indices, computed from the nonzero entries of r.
     pub(crate) fn solve_nonzero(&self, graph: &'g Graph, right: &[(usize, Expr<'g>)]) -> Entries<'g> {
         match self {
             _ if right.is_empty() => Vec::new(),
@@ -158,8 +159,8 @@ impl<'g> Ldl<'g> {
     }
 
     /// Eliminates row by row, L_ip = S_ip/S_pp, S_ij ← S_ij − L_ip S_pp L_jp, always choosing a row with the
-    /// fewest entries left, preferably one with a symbol as pivot: for example, a wheel before the body that
-    /// carries it. `None` if all remaining diagonal entries are zero.
+    /// fewest entries left, preferably one with a symbol as pivot: for example, the row of a wheel before
+    /// that of the body that carries the wheel. `None` if all remaining diagonal entries are zero.
     fn of(graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Option<Ldl<'g>> {
         let k = m.rows();
         let mut schur: Vec<BTreeMap<usize, Expr<'g>>> = (0..k).map(|i| m.nonzero(i).collect()).collect();

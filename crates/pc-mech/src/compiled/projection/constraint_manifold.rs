@@ -46,7 +46,7 @@ pub(crate) struct Conditions<'a, 'g> {
     pub(crate) positions: &'a [Expr<'g>],
     /// The index of the constraint of each f.
     pub(crate) places: Vec<usize>,
-    /// The functions g(t, x, η) for all constraints; ḟ = g for those on positions.
+    /// The functions g(t, x, η) for all constraints; for constraints on positions, g = ḟ.
     pub(crate) velocities: &'a [Expr<'g>],
     /// Whether every g is affine in η.
     pub(crate) affine: bool,
@@ -245,8 +245,8 @@ impl Surface {
         Ok(self.solver.independence_to(&mut found).then_some(found))
     }
 
-    /// Takes the weights from the diagonal of the mass matrix; a component without mass gets the smallest weight
-    /// of the others.
+    /// Takes the weights from the diagonal of the mass matrix; a component without mass gets the smallest of the
+    /// other weights.
     pub(super) fn weigh(&mut self) {
         let masses =
             || self.diagonal.iter().map(|place| place.map_or(0.0, |place| self.entries[place].abs()));

@@ -16,7 +16,7 @@ const RATE: f64 = 1e-9;
 /// A rate is itself a rounding error if it changes by more than this fraction when the last digits change.
 const UNCERTAIN: f64 = 1.0 / 64.0;
 
-/// The number of such changes to the last digits, and their size.
+/// The number of trial changes to the last digits, and their size.
 const PROBES: u64 = 8;
 const LAST_DIGITS: f64 = 8.0 * f64::EPSILON;
 
@@ -102,8 +102,8 @@ impl Motion {
         Ok(self)
     }
 
-    /// Makes the values at (t, y) those to be [kept](Motion::keep) from now on: for another initial state, or
-    /// for other values of the parameters.
+    /// Makes the values at (t, y) the ones to be [kept](Motion::keep) from now on: for another initial state,
+    /// or for other values of the parameters.
     ///
     /// # Errors
     /// As for [`keep`](Motion::keep).

@@ -15,8 +15,8 @@ use crate::numeric::least_squares::LeastSquares;
 const SHORT: f64 = 1e-14;
 
 impl Surface {
-    /// Moves the η of `y` to g = 0, and the `held` ones only as far as necessary: of all δη with C δη = −g it takes
-    /// those that change the held ones least, and of these the shortest, in the kinetic metric.
+    /// Moves the η of `y` to g = 0, and the `held` ones only as far as necessary: among all δη with C δη = −g, it
+    /// takes those that change the held η least, and among these the shortest, in the kinetic metric.
     ///
     /// # Errors
     /// [`EvaluationFailure::NoProjection`] if no such steps lead to g = 0.

@@ -11,7 +11,7 @@ use crate::system::states::check_no_state;
 pub(crate) struct Share<'g> {
     /// The kinetic energy T in terms of (t, x, η).
     pub(crate) kinetic: Expr<'g>,
-    /// The forces Q_1..Q_k, without those that follow from the force function.
+    /// The forces Q_1..Q_k, without the forces derived from the force function.
     pub(crate) forces: Vec<Expr<'g>>,
     /// The force function U(t, x), which is a term of L.
     pub(crate) force_function: Expr<'g>,
@@ -28,7 +28,7 @@ pub(crate) struct Moving<'a, 'g> {
     pub(crate) frame: &'a Frame<'g>,
     pub(crate) eta: &'a [Expr<'g>],
     states: &'a [(Expr<'g>, Expr<'g>)],
-    /// Each x_i' with b_is η_s + b_i0, except those that are themselves quasi-velocities.
+    /// Each x_i' with b_is η_s + b_i0, except for velocities that are themselves quasi-velocities.
     velocities: Vec<(Expr<'g>, Expr<'g>)>,
 }
 

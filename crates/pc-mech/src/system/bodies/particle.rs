@@ -148,7 +148,7 @@ fn simple(quotient: Number) -> Number {
     if is_near && twelfths.abs() < 1e6 { Number::ratio(twelfths as i64, 12) } else { quotient }
 }
 
-/// The vector with the i-th component of another one, and zeros elsewhere.
+/// The vector with the i-th component of the given vector, and zeros elsewhere.
 fn component<'g>(vector: &[Expr<'g>], i: usize) -> Vec<Expr<'g>> {
     let mut part = vec![Expr::ZERO; vector.len()];
     part[i] = vector[i];

@@ -67,7 +67,7 @@ impl<'g, E: Into<Expr<'g>>> From<[E; 6]> for Inertia<'g> {
 }
 
 impl<'g> Inertia<'g> {
-    /// The matrix with each entry replaced by `put` of it.
+    /// The matrix with `put` applied to each entry.
     pub(crate) fn map<'n>(&self, put: impl Fn(Expr<'g>) -> Expr<'n>) -> Inertia<'n> {
         Inertia(self.0.map(put))
     }
