@@ -8,8 +8,8 @@ use crate::compiled::elimination::pivots::PivotPartition;
 
 /// The machine code of f, for callers that manage memory themselves, and the meaning of its outputs.
 ///
-/// [`entry`](MachineCode::entry) writes ẏ, then those pivots of M that change with the state, and those numbers
-/// compared with pivots that change with it. Its parameters are the
+/// [`entry`](MachineCode::entry) writes ẏ, then the pivots of M and the sizes with which they are compared,
+/// leaving out pivots and sizes that do not change with the state. Its parameters are the
 /// [`code_parameters`](crate::Motion::code_parameters): the values of the parameters and results that depend on
 /// them alone. [`is_regular`](MachineCode::is_regular) decides whether ẏ can be trusted. The code stays valid
 /// as long as the motion it came from, or a clone of that motion, exists.

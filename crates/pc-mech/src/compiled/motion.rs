@@ -49,7 +49,7 @@ pub struct Motion {
     pub(super) charts: Vec<Chart>,
     /// How far the constraints are from losing rank, and the motion across a state where they do.
     pub(super) watch: Watch,
-    /// Where f jumps, if derivatives were compiled.
+    /// The surfaces on which f jumps, if derivatives were compiled.
     pub(super) jumps: Vec<RateJump>,
     /// The motion held on one side of each surface between pieces, if f is piecewise.
     pub(super) switches: Option<Box<Switches>>,
@@ -282,7 +282,7 @@ impl Motion {
     }
 
     /// Writes the observables. Unless `solved`, accelerations are not computed, and observables that contain
-    /// one are not finite.
+    /// an acceleration are not finite.
     pub(crate) fn watch(&mut self, t: f64, y: &[f64], values: &mut [f64], solved: bool) {
         assert_eq!(y.len(), self.names.len(), "length of the state");
         assert_eq!(values.len(), self.observable_names.len(), "number of observables");
@@ -436,9 +436,9 @@ impl Motion {
         }
     }
 
-    /// The number of operations of one evaluation of the right-hand side, kinematics included. It excludes the
-    /// factorisation if M is factorised numerically, and includes one iteration if y = ∂L/∂η is solved for η by
-    /// Newton's method.
+    /// The number of operations of one evaluation of the right-hand side, kinematics included. The number
+    /// excludes the factorisation if M is factorised numerically, and includes one iteration if y = ∂L/∂η is
+    /// solved for η by Newton's method.
     pub fn cost(&self) -> Cost {
         match &self.form {
             Form::Unrolled(unrolled) => unrolled.cost(self.names.len()),
@@ -447,7 +447,8 @@ impl Motion {
         }
     }
 
-    /// The machine code of f; none if f is more than one program of (t, y, p), reads tables, or is interpreted.
+    /// The machine code of f; none if f consists of more than one program of (t, y, p), reads tables, or is
+    /// interpreted.
     pub fn machine_code(&mut self) -> Option<MachineCode> {
         match &mut self.form {
             Form::Unrolled(unrolled) if self.signals.is_empty() => unrolled.machine_code(self.names.len()),

@@ -73,8 +73,8 @@ impl Motion {
     }
 
     /// Moves the η of a state onto the constraints, and leaves its x as they are. The quasi-velocities with the
-    /// indices `held` change only as far as constraints on them alone demand; the others adjust to them. Both
-    /// move by the shortest path in the kinetic metric.
+    /// indices `held` change only as far as constraints on them alone demand; the others adjust to them. All of
+    /// them move by the shortest path in the kinetic metric.
     ///
     /// # Errors
     /// A [`Failure`] where no such velocities are found.

@@ -13,8 +13,8 @@ use pc_expr::{
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::point::Point;
 
-/// The unit of errors. An operation has an error of a quarter of it; a long sum, for which only the rounding
-/// errors of the terms are counted, may have a larger one.
+/// The unit of errors. An operation has an error of a quarter of this unit; a long sum, for which only the
+/// rounding errors of the terms are counted, may have a larger error.
 const UNIT: f64 = 2.0 * f64::EPSILON;
 
 /// Keeps a quotient of two zeros from being NaN.
@@ -70,7 +70,7 @@ impl Measured {
     /// The values at (t, y).
     ///
     /// # Errors
-    /// [`EvaluationFailure::Expr`] if one is not finite.
+    /// [`EvaluationFailure::Expr`] if a value is not finite.
     pub(crate) fn try_eval(&mut self, at: Point<'_>) -> Result<&[f64], EvaluationFailure> {
         self.eval(at);
         check_finite(self.values(), &self.functions, at)?;
@@ -115,7 +115,7 @@ struct WithError<'g> {
 }
 
 impl<'g> WithError<'g> {
-    /// A number with one rounding.
+    /// A number that has been rounded once.
     fn rounded(value: Expr<'g>) -> WithError<'g> {
         WithError { value, error: value.abs() }
     }

@@ -359,8 +359,8 @@ impl VectorField for Motion {
     }
 }
 
-/// Whether a held motion has produced a value: beyond a surface it may have none, but the motion on the other
-/// side may have one.
+/// Whether a held motion has produced a value: beyond a surface it may have no value, though the motion on
+/// the other side may have one.
 fn is_written(outcome: &Result<(), Failure>) -> bool {
     outcome.as_ref().err().is_none_or(|failure| !failure.is_recoverable())
 }

@@ -17,12 +17,12 @@ const LONGEST_TRIED: u32 = 1000;
 /// motion then stays away from states with singular equations for a while.
 const REGULAR: f64 = 0.5;
 /// A pivot chosen because it is the shortest in print must be at least this fraction of the largest, so that
-/// equations lose at most one digit. (There is a second reason to derive few choices: forms made earlier in a
-/// graph influence later ones.)
+/// equations lose at most one digit. (There is a second reason to derive the equations of only a few choices:
+/// expressions formed earlier in a graph influence the form of later ones.)
 const PIVOT: f64 = 0.1;
 
 /// The matrix C at a state, with its rows scaled to length one and its columns divided by the square roots of
-/// the masses, so that it does not depend on units.
+/// the masses, so that the matrix does not depend on units.
 struct Weighed {
     rows: Vec<Vec<f64>>,
 }
@@ -32,8 +32,8 @@ impl<'g> Multipliers<'g> {
     /// [independent](Multipliers::in_independent_velocities) ones.
     ///
     /// # Errors
-    /// [`ConstraintError::NotIndependent`] if the number of names is wrong, a name does not belong to the system, or
-    /// these quasi-velocities do not determine the others at the values `at` of time, coordinates, quasi-velocities
+    /// [`ConstraintError::NotIndependent`] if the number of quasi-velocities is wrong, one of them does not belong
+    /// to the system, or they do not determine the others at the values `at` of time, coordinates, quasi-velocities
     /// and parameters.
     ///
     /// ```

@@ -17,7 +17,7 @@ pub struct Constraint<'g> {
 
 impl<'g> Constraint<'g> {
     /// The condition that `expression` vanishes. It is a condition on velocities, affine in η, if it contains a
-    /// quasi-velocity, and one on positions otherwise. The name is used in messages and reactions.
+    /// quasi-velocity, and a condition on positions otherwise. The name is used in messages and reactions.
     pub fn new(name: impl Into<String>, expression: Expr<'g>) -> Constraint<'g> {
         Constraint { name: name.into(), expression, nonlinear: false }
     }

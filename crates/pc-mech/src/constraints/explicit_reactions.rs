@@ -76,7 +76,7 @@ impl<'g> Multipliers<'g> {
         Ok(graph.shorten(&reactions, &system.collecting_order()))
     }
 
-    /// The name of the first constraint whose row adds nothing to the rank of those before it.
+    /// The name of the first constraint whose row adds nothing to the rank of the rows before it.
     fn first_dependent(&self, gram: &Matrix<Expr<'g>>) -> Option<String> {
         let (graph, rows) = (self.equations.system.graph(), gram.to_rows());
         let dependent = (0..rows.len()).find(|&a| graph.generic_rank(&rows[..=a]) <= a)?;

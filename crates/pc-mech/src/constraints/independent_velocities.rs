@@ -143,7 +143,7 @@ impl<'g> Multipliers<'g> {
         })
     }
 
-    /// The equations with a preference: the k − m listed quasi-velocities are taken as
+    /// The same equations with a preference: the k − m listed quasi-velocities are taken as
     /// [independent](Multipliers::in_independent_velocities) wherever they determine the others well.
     #[must_use]
     pub fn preferring(mut self, independent: &[Expr<'g>]) -> Multipliers<'g> {

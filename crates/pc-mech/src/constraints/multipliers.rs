@@ -20,7 +20,7 @@ use crate::system::system::System;
 ///
 /// of a system whose quasi-velocities are bound by C η + c_0 = 0: conditions on velocities, or the derivatives
 /// C_αs = X_s f_α, c_α0 = X_0 f_α of conditions on positions. M and r are those of (9); λ_α is the reaction
-/// conjugate to the condition, and has the power −λ_α c_α0. For [nonlinear](Constraint::nonlinear) conditions
+/// conjugate to the condition, and its power is −λ_α c_α0. For [nonlinear](Constraint::nonlinear) conditions
 /// g(t, x, η) = 0, C is ∂g/∂η, and C η̇ = −(∂g/∂x) ẋ − ∂g/∂t.
 ///
 /// All k quasi-velocities are components of the state. At each evaluation the quasi-velocities that determine the
@@ -61,7 +61,7 @@ pub struct Multipliers<'g> {
     pub(super) followers: Vec<Constraint<'g>>,
     /// The number of independent constraints, which come first almost everywhere.
     pub(super) rank: usize,
-    /// The indices of the quasi-velocities that depend on the others, wherever these determine them.
+    /// The indices of the quasi-velocities that depend on the others, wherever the others determine them.
     pub(crate) dependent: Option<Vec<usize>>,
     /// Whether the reactions are among the observables.
     pub(super) observed: bool,
@@ -185,9 +185,9 @@ impl<'g> Multipliers<'g> {
     }
 
     /// The equations with further constraints that are implied by the present ones. Where the present
-    /// constraints are nearly dependent, they are replaced by those among the further ones that follow only
-    /// where the present ones hold, as the bars of an overconstrained mechanism take turns in carrying the
-    /// load. The individual reactions are then undetermined, and NaN. A
+    /// constraints are nearly dependent, they are replaced by those further constraints that are implied only
+    /// where the present ones hold, just as the bars of an overconstrained mechanism take turns in carrying
+    /// the load. The individual reactions are then undetermined, and NaN. A
     /// [projection](pc_expr::VectorField::project) of the compiled motion to a state where one of the further
     /// constraints does not vanish is refused, as [`ConstraintError::Departed`].
     #[must_use]
@@ -202,7 +202,7 @@ impl<'g> Multipliers<'g> {
         (0..self.coefficients.columns()).map(on).collect()
     }
 
-    /// The equations with the reactions as observables, after all others.
+    /// The equations with the reactions as observables, which come after all other observables.
     #[must_use]
     pub fn observe_reactions(self) -> Multipliers<'g> {
         Multipliers { observed: true, ..self }
@@ -241,7 +241,7 @@ impl<'g> Multipliers<'g> {
     }
 
     /// The same equations with spare constraints after the others: implied constraints that are independent of
-    /// them away from the states that satisfy the constraints.
+    /// the others away from the states that satisfy the constraints.
     fn with_spare(&self) -> Multipliers<'g> {
         let (system, mut whole) = (&self.equations.system, self.clone());
         let graph = system.graph();

@@ -26,8 +26,8 @@ impl<'g> Equations<'g> {
     ///
     /// C source consists of a header and a source file, Rust source of one file. Each file explains its use at its
     /// head. The same system, built in a new graph, gives the same source text. The operations are those of a
-    /// [`Program`] of the same expressions, so that the values are those of the interpreter to the last bit where the
-    /// mathematical library is the same.
+    /// [`Program`] of the same expressions, so that the values agree with those of the interpreter to the last bit
+    /// where the mathematical library is the same.
     ///
     /// ```
     /// use pc_mech::{EmitOptions, Graph, Language, System};

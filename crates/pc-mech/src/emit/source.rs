@@ -71,8 +71,8 @@ impl EmitOptions {
     }
 
     /// Whether to write a·b + c as a single operation, with a single rounding. This is fast only where the
-    /// processor has such an operation and the compiler may use it, and the results differ from those of the
-    /// library by rounding errors.
+    /// processor has such an operation and the compiler may use it, and the results then differ from the
+    /// library's by rounding errors.
     #[must_use]
     pub fn fused(mut self, fused: bool) -> EmitOptions {
         self.fused = fused;

@@ -68,13 +68,13 @@ impl Motion {
     /// these integrals have their values at (t, y). Applied after each step, it changes the state by at most
     /// the error of the step.
     ///
-    /// An integral is not kept at states where its gradient is linearly dependent on those before it, such as
-    /// the energy at rest. A quantity that may jump along the motion is refused: keeping it would change the
-    /// motion.
+    /// An integral is not kept at states where its gradient depends linearly on the gradients of the
+    /// integrals before it; an example is the energy at rest. A quantity that may jump along the motion is
+    /// refused: keeping it would change the motion.
     ///
     /// # Errors
-    /// [`IntegralError::NotAnIntegral`] if one of them changes along the motion at (t, y) or a little later;
-    /// errors of the equations of motion at (t, y).
+    /// [`IntegralError::NotAnIntegral`] if one of the integrals changes along the motion at (t, y) or a
+    /// little later; errors of the equations of motion at (t, y).
     ///
     /// ```
     /// use pc_mech::{Graph, System, VectorField};
@@ -142,7 +142,7 @@ impl Motion {
     }
 
     /// # Errors
-    /// [`IntegralError::NotAnIntegral`] if one of them changes at (t, y), where ẏ = `rates`.
+    /// [`IntegralError::NotAnIntegral`] if one of the integrals changes at (t, y), where ẏ = `rates`.
     fn check(
         &mut self,
         integrals: &mut KeptIntegrals,

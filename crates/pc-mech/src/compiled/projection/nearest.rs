@@ -125,7 +125,7 @@ impl Surface {
         eta.zip(&self.weights).map(|(eta, weight)| eta * weight.sqrt()).fold(0.0, f64::hypot)
     }
 
-    /// Two steps along g = 0: that of Newton's method to the nearest point, and the steepest direction
+    /// Two steps along g = 0: the step of Newton's method to the nearest point, and the steepest direction
     /// towards it; both are zero at that point.
     ///
     ///   (M − ∂(Cᵀμ)/∂η) δ + Cᵀ ν = −M z,   C δ = 0,   where   M z + Cᵀ μ = M (η − η₀),   C z = 0.
