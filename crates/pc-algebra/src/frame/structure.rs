@@ -102,9 +102,9 @@ impl<'g> StructureCoefficients<'g> {
 
     /// The coefficient c_rs^m with r, s in 0..=k and m in 1..=k.
     ///
-    /// It is the Boltzmann–Hamel symbol γ_rs^m = (∂a_mi/∂x_j − ∂a_mj/∂x_i) b_ir b_js. Authors differ in its
-    /// sign and in the order of its indices: the convention here is that of the equation d/dt ∂L/∂η_s +
-    /// γ_sr^m η_r ∂L/∂η_m − ∂L/∂π_s = Q_s.
+    /// The coefficient is the Boltzmann–Hamel symbol γ_rs^m = (∂a_mi/∂x_j − ∂a_mj/∂x_i) b_ir b_js. Authors
+    /// differ in its sign and in the order of its indices: the convention here is that of the equation d/dt
+    /// ∂L/∂η_s + γ_sr^m η_r ∂L/∂η_m − ∂L/∂π_s = Q_s.
     ///
     /// # Panics
     /// If an index is out of range.

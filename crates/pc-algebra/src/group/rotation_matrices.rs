@@ -15,7 +15,7 @@ use crate::linear_algebra::matrix::Matrix;
 /// velocities (right), where ω̂ x = ω × x.
 ///
 /// `log` returns |x| ≤ π. At |x| = π, where x and −x give the same R, it returns the one whose first nonzero
-/// component is positive. It is computed from the quaternion, and so is accurate there too.
+/// component is positive. The vector is computed from the quaternion, and so is accurate at π too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RotationMatrices;
 

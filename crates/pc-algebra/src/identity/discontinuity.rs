@@ -36,7 +36,7 @@ pub struct Discontinuity<'g> {
 /// corner or a root the rest falls with δ; at a pole it rises.
 ///
 /// # Errors
-/// As [`Program::new`].
+/// As for [`Program::new`].
 ///
 /// ```
 /// # use pc_algebra::discontinuities;
@@ -98,7 +98,7 @@ pub fn discontinuities<'g>(
 /// them, or has [discontinuities]. The symbols of `numbers` have the values given there.
 ///
 /// # Errors
-/// As [`discontinuities`].
+/// As for [`discontinuities`].
 pub fn may_jump<'g>(
     graph: &'g Graph,
     function: Expr<'g>,

@@ -89,8 +89,8 @@ impl<'g> Neighbourhood<'g> {
 
     /// The largest |f|/Σ|terms| of sums f of `terms` at the centre and points near it where all are finite: about
     /// 10⁻¹⁶ where f vanishes identically but the graph does not fold it to 0, and never more than 1; infinity if
-    /// there are no such points. It is 0 only if the graph folds f to 0. Σ|terms| includes terms that have
-    /// cancelled inside a term.
+    /// there are no such points. The result is 0 only if the graph folds f to 0. Σ|terms| includes terms that
+    /// have cancelled inside a term.
     ///
     /// The result does not depend on units: 10⁻¹⁰ x is not zero.
     ///

@@ -9,9 +9,9 @@ use crate::lie_algebra::lie_algebra::LieAlgebra;
 
 /// An algebra of the catalogue.
 pub struct Entry {
-    /// Its name for [`LieAlgebra::named`].
+    /// The name under which [`LieAlgebra::named`] finds it.
     pub name: &'static str,
-    /// Its description, with the order and signs of its basis.
+    /// A description, with the order and signs of the basis.
     pub description: &'static str,
     make: fn() -> LieAlgebra,
 }

@@ -50,7 +50,7 @@ impl LieAlgebra {
     /// commute.
     ///
     /// # Errors
-    /// As [`new`](LieAlgebra::new); a list that contradicts itself is not antisymmetric.
+    /// As for [`new`](LieAlgebra::new); a list that contradicts itself is not antisymmetric.
     pub fn from_brackets(
         dim: usize,
         brackets: &[(usize, usize, usize, Number)],

@@ -75,7 +75,7 @@ impl Subspace {
     /// Whether `vector`, of length [`ambient`](Subspace::ambient), lies in the subspace.
     ///
     /// # Errors
-    /// As [`span`](Subspace::span).
+    /// As for [`span`](Subspace::span).
     pub fn contains(&self, vector: &[Number]) -> Result<bool, AlgebraError> {
         Ok(self.has(&exact_vector(self.ambient(), 0, vector)?))
     }

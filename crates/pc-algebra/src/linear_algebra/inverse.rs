@@ -20,12 +20,12 @@ const ROUNDING: f64 = 1e-13;
 
 /// The inverse of a square matrix; `None` if its determinant is identically zero.
 ///
-/// Its entries are regular wherever the matrix is. Constant pivots that are not small relative to their row
-/// are eliminated first. The remaining matrix is solved block by block, in block triangular form: small
-/// blocks by cofactors over their determinant, larger ones by orthogonalisation. No divisor vanishes at any
-/// state where the matrix is regular. Constants that cancel up to rounding errors count as zero; so does a
-/// divisor that is no more than a rounding error at random points, even if the graph does not fold it to
-/// zero.
+/// The entries of the inverse are regular wherever the matrix is. Constant pivots that are not small relative
+/// to their row are eliminated first. The remaining matrix is solved block by block, in block triangular
+/// form: small blocks by cofactors over their determinant, larger ones by orthogonalisation. No divisor
+/// vanishes at any state where the matrix is regular. Constants that cancel up to rounding errors count as
+/// zero; so does a divisor that is no more than a rounding error at random points, even if the graph does not
+/// fold it to zero.
 ///
 /// Uncoupled rows and columns are inverted separately.
 pub fn inverse<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Matrix<Expr<'g>>> {

@@ -48,9 +48,9 @@ pub(crate) struct Chart {
 /// How a determinant behaves between the ends of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Passage {
-    /// It vanishes, with or without a change of sign.
+    /// The determinant vanishes, with or without a change of sign.
     Zero,
-    /// It becomes infinite, with or without a change of sign.
+    /// The determinant becomes infinite, with or without a change of sign.
     Pole,
 }
 
@@ -87,7 +87,7 @@ impl Chart {
     }
 
     /// The chart that watches a square matrix through which some quasi-velocities determine others; `None` if
-    /// it is constant.
+    /// the matrix is constant.
     pub(crate) fn watching<'g>(
         system: &System<'g>,
         a: &Matrix<Expr<'g>>,

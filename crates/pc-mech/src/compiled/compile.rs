@@ -35,7 +35,7 @@ impl<'g> Equations<'g> {
     /// [kernel](pc_expr::Backend).
     ///
     /// # Errors
-    /// As [`compile`](Equations::compile).
+    /// As for [`compile`](Equations::compile).
     pub fn compile_for(&self, options: impl Into<CompileOptions>) -> Result<Motion, MechError> {
         let options = options.into();
         let Some(tree) = &self.system.tree else {

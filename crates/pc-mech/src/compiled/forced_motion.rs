@@ -13,8 +13,8 @@ use crate::system::external_force::ExternalForce;
 /// A [`Motion`] under external forces: ẏ = f(t, y, q(t, y)).
 ///
 /// The forces are run-time inputs of the motion, like parameters, and come after them. So the Jacobian is ∂f/∂y +
-/// ∂f/∂q ∂q/∂y, where only ∂q/∂y may be a [difference quotient](ExternalForce::jacobian). It is full: its zero
-/// pattern is not known.
+/// ∂f/∂q ∂q/∂y, where only ∂q/∂y may be a [difference quotient](ExternalForce::jacobian). The Jacobian is full,
+/// since its zero pattern is not known.
 ///
 /// ```
 /// use pc_mech::{Graph, System, VectorField};
@@ -53,7 +53,7 @@ impl Equations<'_> {
     /// Compiles the equations, their Jacobian and the observables, with `force` for the external forces.
     ///
     /// # Errors
-    /// As [`compile`](Equations::compile), and [`ForceError::NoneDeclared`] if no external force was declared.
+    /// As for [`compile`](Equations::compile), and [`ForceError::NoneDeclared`] if no external force was declared.
     pub fn compile_forced<F: ExternalForce>(&self, force: F) -> Result<ForcedMotion<F>, MechError> {
         self.compile_forced_for(CompileOptions::default(), force)
     }
@@ -61,7 +61,7 @@ impl Equations<'_> {
     /// Compiles as [`compile_forced`](Equations::compile_forced) does, with other derivatives or for another kernel.
     ///
     /// # Errors
-    /// As [`compile_forced`](Equations::compile_forced).
+    /// As for [`compile_forced`](Equations::compile_forced).
     pub fn compile_forced_for<F: ExternalForce>(
         &self,
         options: impl Into<CompileOptions>,
@@ -73,10 +73,10 @@ impl Equations<'_> {
 
 impl Canonical<'_> {
     /// Compiles the equations as [`compile_for`](Canonical::compile_for) does, with `force` for the external forces;
-    /// it receives the state (x, y).
+    /// the force receives the state (x, y).
     ///
     /// # Errors
-    /// As [`Equations::compile_forced`].
+    /// As for [`Equations::compile_forced`].
     pub fn compile_forced_for<F: ExternalForce>(
         &self,
         options: impl Into<CompileOptions>,
@@ -90,7 +90,7 @@ impl Multipliers<'_> {
     /// Compiles the equations as [`compile_for`](Multipliers::compile_for) does, with `force` for the external forces.
     ///
     /// # Errors
-    /// As [`Equations::compile_forced`].
+    /// As for [`Equations::compile_forced`].
     pub fn compile_forced_for<F: ExternalForce>(
         &self,
         options: impl Into<CompileOptions>,
@@ -154,7 +154,7 @@ impl<F: ExternalForce> ForcedMotion<F> {
         &self.force
     }
 
-    /// The external force, to be changed.
+    /// Mutable access to the external force.
     pub fn force_mut(&mut self) -> &mut F {
         &mut self.force
     }
@@ -164,7 +164,7 @@ impl<F: ExternalForce> ForcedMotion<F> {
         &self.motion.parameters()[..self.parameters]
     }
 
-    /// The values of the parameters, to be changed.
+    /// Mutable access to the values of the parameters.
     pub fn parameters_mut(&mut self) -> &mut [f64] {
         &mut self.motion.parameters_mut()[..self.parameters]
     }

@@ -117,7 +117,7 @@ impl Newton {
         outcome
     }
 
-    /// As [`solve`](Newton::solve), but starts from the w in `known`.
+    /// Like [`solve`](Newton::solve), but starts from the w in `known`.
     fn solve_from(
         &mut self,
         (t, p): At<'_>,
@@ -158,7 +158,7 @@ impl Newton {
         Err(self.failure(MOST_STEPS))
     }
 
-    /// Takes the first λ from ½^`halvings` downwards that sufficiently reduces F, whose norm was `before`.
+    /// Takes the first λ from ½^`halvings` downwards that reduces F sufficiently; the norm of F was `before`.
     /// Returns the number of halvings, if there is such a λ.
     fn search(
         &mut self,

@@ -18,12 +18,13 @@ use crate::error::{EvaluationError, MechError};
 
 impl Multipliers<'_> {
     /// Compiles the canonical equations with multipliers as a vector field of the state (x, y) with the momenta
-    /// y_s = ∂L/∂η_s of all quasi-velocities, called as [`System::momentum_symbols`](crate::System::momentum_symbols):
+    /// y_s = ∂L/∂η_s of all quasi-velocities, named like
+    /// [`System::momentum_symbols`](crate::System::momentum_symbols):
     ///
     ///   ẏ_s = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α,   ẋ = b η + b_0,   C η + c_0 = 0.
     ///
     /// No velocities are chosen as independent, so a position is singular only where the constraints themselves are
-    /// singular. Its projection, observables and [kept](Motion::keep) integrals are the same as with
+    /// singular. The projection, the observables and the [kept](Motion::keep) integrals are the same as with
     /// [`compile_for`](Multipliers::compile_for); integrals to be kept must be integrals of the equations with these
     /// multipliers. Products with the Jacobian are not available.
     ///
@@ -50,7 +51,7 @@ impl Multipliers<'_> {
     /// ```
     ///
     /// # Errors
-    /// As [`compile_for`](Multipliers::compile_for); [`ShapeError`](crate::ShapeError) for a guess of the wrong
+    /// As for [`compile_for`](Multipliers::compile_for); [`ShapeError`](crate::ShapeError) for a guess of the wrong
     /// length.
     pub fn compile_in_momenta(&self, options: CompileOptions, guess: &[f64]) -> Result<Motion, MechError> {
         let motion = InMomenta::new(self, self.legendre_transform(guess)?, &options)?;
@@ -164,7 +165,7 @@ impl InMomenta {
     /// Writes the (x, η, z) that corresponds to (x, y, z) to `state`.
     ///
     /// # Errors
-    /// As [`LegendreTransform::to_quasi_velocities`].
+    /// As for [`LegendreTransform::to_quasi_velocities`].
     pub(crate) fn read(&mut self, t: f64, y: &[f64]) -> Result<(), MechError> {
         let parameters = self.transform.parameters_mut();
         let known = parameters.len();
@@ -194,7 +195,7 @@ impl InMomenta {
         }
     }
 
-    /// The range of η, or of their momenta, in a state.
+    /// The range of indices of η, or of the momenta, in a state.
     fn moving(&self) -> Range<usize> {
         let n = self.inner.coordinates();
         n..n + self.quasi_velocities

@@ -150,7 +150,7 @@ impl LegendreTransform {
     /// of `equations`, or, where the equations are linear, of the expressions `closed`.
     ///
     /// # Errors
-    /// As [`Canonical::legendre_transform`](crate::Canonical::legendre_transform).
+    /// As for [`Canonical::legendre_transform`](crate::Canonical::legendre_transform).
     pub(crate) fn unconstrained<'g>(
         system: &System<'g>,
         momenta: &[Expr<'g>],
@@ -173,7 +173,7 @@ impl LegendreTransform {
     /// to the solution of the linear equations `nearby`.
     ///
     /// # Errors
-    /// As [`Canonical::legendre_transform`](crate::Canonical::legendre_transform).
+    /// As for [`Canonical::legendre_transform`](crate::Canonical::legendre_transform).
     pub(crate) fn solving<'g>(
         system: &System<'g>,
         momenta: &[Expr<'g>],
@@ -219,12 +219,12 @@ impl LegendreTransform {
         }
     }
 
-    /// The values of the parameters, to be changed.
+    /// Mutable access to the values of the parameters.
     pub fn parameters_mut(&mut self) -> &mut [f64] {
         &mut self.parameters
     }
 
-    /// The state (x, y) that corresponds to (x, η), both of length n + k; first-order states follow unchanged.
+    /// The state (x, y) that corresponds to (x, η), both of length n + k; first-order states come last, unchanged.
     ///
     /// # Errors
     /// [`ShapeError`](crate::ShapeError); [`ExprError::NotFinite`](pc_expr::ExprError::NotFinite) outside the domain of
@@ -248,7 +248,7 @@ impl LegendreTransform {
             .map_err(|failure| self.error(failure, t, state))
     }
 
-    /// The state (x, η) that corresponds to (x, y), both of length n + k; first-order states follow unchanged.
+    /// The state (x, η) that corresponds to (x, y), both of length n + k; first-order states come last, unchanged.
     /// Where L is not quadratic, Newton's method finds η from the [guess](crate::Canonical::with_guess).
     ///
     /// # Errors

@@ -67,7 +67,8 @@ pub(super) enum Form {
 ///
 ///   M η − Cᵀ μ = y − p_0,   C η = −c_0,
 ///
-/// or p − Cᵀ μ = y, g = 0, which satisfies the constraints and is regular wherever they are (μ = 0 on them),
+/// or p − Cᵀ μ = y, g = 0, which satisfies the constraints and is regular wherever the constraints are (μ = 0
+/// where they hold),
 ///
 ///   ẏ = ∂p/∂t + (∂p/∂x) ẋ + (∂p/∂z) ż + M η̇ = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α.
 ///
@@ -161,7 +162,7 @@ impl Motion {
         }
     }
 
-    /// The values of the parameters, to be changed.
+    /// Mutable access to the values of the parameters.
     pub fn parameters_mut(&mut self) -> &mut [f64] {
         self.watch.forget();
         match &mut self.form {
@@ -172,8 +173,8 @@ impl Motion {
         &mut self.parameters
     }
 
-    /// The values, from index `first` on, of inputs on which M does not depend, such as external forces, to be
-    /// changed.
+    /// Mutable access to the values, from index `first` on, of inputs on which M does not depend, such as
+    /// external forces.
     pub(crate) fn inputs_mut(&mut self, first: usize) -> &mut [f64] {
         match &mut self.form {
             Form::InMomenta(motion) => motion.inner_mut().inputs_mut(first),
@@ -274,7 +275,7 @@ impl Motion {
     /// the surface; the signs may then be due to rounding errors.
     ///
     /// # Panics
-    /// As [`observe`](Motion::observe).
+    /// As for [`observe`](Motion::observe).
     pub fn observe_beside(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
         let mut values = vec![f64::NAN; self.observable_names.len()];
         self.watch_beside(t, y, &mut values, true);

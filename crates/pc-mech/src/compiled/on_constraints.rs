@@ -61,7 +61,7 @@ impl Motion {
     /// Moves the η of a state onto the constraints, and leaves its x as they are.
     ///
     /// # Errors
-    /// As the [projection](pc_expr::VectorField::project) of the state.
+    /// As for the [projection](pc_expr::VectorField::project) of the state.
     ///
     /// # Panics
     /// If `y` does not have the length of the state.

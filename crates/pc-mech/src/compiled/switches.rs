@@ -261,7 +261,7 @@ impl Switches {
     /// The rates of the motion on the sides held.
     ///
     /// # Errors
-    /// As [`Motion::rhs`](VectorField::rhs).
+    /// As for [`Motion::rhs`](VectorField::rhs).
     pub(crate) fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
         match self.sliding() {
             Some(sides) => {
@@ -347,7 +347,7 @@ impl Switches {
     /// The Taylor series of the motion on the sides held.
     ///
     /// # Errors
-    /// As [`Motion::expand`](VectorField::expand).
+    /// As for [`Motion::expand`](VectorField::expand).
     pub(crate) fn expand(&mut self, t: f64, y: &[f64], order: usize) -> Result<&TaylorSeries, Failure> {
         if let Some(sides) = self.sliding() {
             return self.expand_sliding(&sides, &[], (t, y), order);
@@ -359,7 +359,7 @@ impl Switches {
     /// The Taylor series of the motion on the sides held, with its derivatives with respect to `columns`.
     ///
     /// # Errors
-    /// As [`Motion::expand_varied`](VectorField::expand_varied).
+    /// As for [`Motion::expand_varied`](VectorField::expand_varied).
     pub(crate) fn expand_varied(
         &mut self,
         columns: &[Option<usize>],

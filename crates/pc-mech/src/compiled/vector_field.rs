@@ -372,7 +372,7 @@ impl Motion {
         self.switches.as_deref_mut().filter(|switches| switches.holds())
     }
 
-    /// As [`leads`](VectorField::leads), with the rates computed by `rates`.
+    /// Does the work of [`leads`](VectorField::leads), with rates computed by `rates`.
     pub(super) fn leads_by(
         &mut self,
         from: (f64, &[f64]),

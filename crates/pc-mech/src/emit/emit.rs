@@ -362,7 +362,7 @@ impl<'a, 'g> Writer<'a, 'g> {
         self.routine_along(&[], name, purpose, (array, extent), values, slot)
     }
 
-    /// As [`routine`](Self::routine), but with these symbols for a direction after the parameters.
+    /// Like [`routine`](Self::routine), but with these symbols for a direction after the parameters.
     fn routine_along(
         &self,
         direction: &[Expr<'g>],

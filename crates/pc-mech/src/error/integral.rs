@@ -21,7 +21,7 @@ pub enum IntegralError {
         name: String,
         /// The time at which it was found to change.
         t: f64,
-        /// Its rate of change.
+        /// The rate of change of the function.
         rate: f64,
     },
     /// A function to be kept that may jump, and so is constant only between jumps.

@@ -178,7 +178,7 @@ impl<'g> SystemBuilder<'g> {
         Ok(())
     }
 
-    /// Checks that neither momenta nor the frame depend on a function of time given by a table, since the
+    /// Checks that neither the momenta nor the frame depend on a function of time given by a table, since the
     /// rates of that function would then be needed.
     fn check_signals(
         &self,
@@ -200,7 +200,7 @@ impl<'g> SystemBuilder<'g> {
 }
 
 /// # Errors
-/// [`ShapeError`](crate::ShapeError) if there are not three.
+/// [`ShapeError`](crate::ShapeError) if there are not three components.
 fn three_components<'g>(acceleration: &[Expr<'g>]) -> Result<[Expr<'g>; 3], MechError> {
     shape("the acceleration of gravity", acceleration.len(), 3)?;
     Ok(std::array::from_fn(|i| acceleration[i]))

@@ -120,9 +120,9 @@ impl<'g> SystemBuilder<'g> {
     }
 
     /// Declares a symbol to be a first-order state z with the rate ż(t, x, η, z), such as the current in a motor or the
-    /// integral of a controller's error. It is integrated with the motion after the quasi-velocities; L, forces,
-    /// integrals and outputs may depend on it, but the frame may not. With p_s = ∂L/∂η_s, dp_s/dt then has the term ż
-    /// ∂p_s/∂z.
+    /// integral of a controller's error. The state z is integrated with the motion and comes after the
+    /// quasi-velocities; L, forces, integrals and outputs may depend on it, but the frame may not. With p_s = ∂L/∂η_s,
+    /// dp_s/dt then has the term ż ∂p_s/∂z.
     ///
     /// ```
     /// # use pc_mech::{Graph, System, VectorField};
@@ -172,15 +172,16 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Gives the brackets \[X_r, X_s\] = c_rs^m X_m (5) of a stationary frame. They are needed where b does not
-    /// determine them (rank b < k, or no coordinates); otherwise they are checked against the frame.
+    /// Gives the brackets \[X_r, X_s\] = c_rs^m X_m (5) of a stationary frame. The brackets are needed where b
+    /// does not determine them (rank b < k, or no coordinates); otherwise they are checked against the frame.
     #[must_use]
     pub fn algebra(self, algebra: &LieAlgebra) -> Self {
         self.structure(algebra.structure_coefficients())
     }
 
-    /// Gives all structure coefficients (5), c_0s^m included. They are needed and checked in the same cases
-    /// as those of an [algebra](SystemBuilder::algebra), and may contain parameters, time and coordinates.
+    /// Gives all structure coefficients (5), c_0s^m included. The coefficients are needed and checked in the
+    /// same cases as those of an [algebra](SystemBuilder::algebra), and may contain parameters, time and
+    /// coordinates.
     #[must_use]
     pub fn structure(mut self, structure: StructureCoefficients<'g>) -> Self {
         self.structure = Some(structure);
@@ -269,7 +270,7 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Lets gravity with the acceleration g(t), along the axes of their positions, act on all bodies: each adds
+    /// Lets gravity act on all bodies, with the acceleration g(t) along the axes of their positions: each adds
     /// m g · r to L, where r is the position of its mass centre.
     ///
     /// ```

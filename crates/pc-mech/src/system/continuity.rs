@@ -20,7 +20,8 @@ impl<'g> SystemBuilder<'g> {
         near
     }
 
-    /// Checks that neither L, as a function of the position, nor momenta nor the frame jump.
+    /// Checks that L, as a function of the position, does not jump, and that neither the momenta nor the
+    /// frame jump.
     ///
     /// # Errors
     /// [`LagrangianError::Jumps`], [`LagrangianError::MomentumJumps`], [`FrameError::Jumps`]

@@ -24,7 +24,7 @@ pub trait ExternalForce {
     /// with h_j = √ε max(1, |y_j|), ε the unit of rounding; the rest of the Jacobian stays exact.
     ///
     /// # Errors
-    /// As [`force`](ExternalForce::force).
+    /// As for [`force`](ExternalForce::force).
     fn jacobian(&mut self, t: f64, y: &[f64], dq: &mut [f64]) -> Result<(), Failure> {
         difference_quotients(self, (t, y), dq, &mut Vec::new())
     }
@@ -34,7 +34,7 @@ pub trait ExternalForce {
 /// `room` is workspace.
 ///
 /// # Errors
-/// As [`ExternalForce::force`].
+/// As for [`ExternalForce::force`].
 pub fn difference_quotients<F: ExternalForce + ?Sized>(
     force: &mut F,
     (t, y): (f64, &[f64]),

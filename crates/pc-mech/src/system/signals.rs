@@ -222,7 +222,7 @@ pub struct Signals {
 #[derive(Clone, Debug)]
 struct Signal {
     name: String,
-    /// Its index among the parameters.
+    /// The index of the input among the parameters.
     place: usize,
     table: Arc<Table>,
 }
@@ -300,7 +300,7 @@ impl Signals {
         })
     }
 
-    /// As [`read`](Signals::read), but at a jump it always writes the values after the jump.
+    /// Like [`read`](Signals::read), but at a jump it always writes the values after the jump.
     ///
     /// # Errors
     /// [`OutsideTable`]

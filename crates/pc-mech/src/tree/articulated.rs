@@ -358,8 +358,8 @@ impl<'g> Articulated<'g> {
     }
 }
 
-/// Eliminates a component, so that the remaining `inertia` does not resist it. Its pivot is watched if the
-/// `size` of its terms is given.
+/// Eliminates a component, so that the remaining `inertia` does not resist it. The pivot of the component is
+/// watched if the `size` of its terms is given.
 fn eliminate<'g>(
     graph: &'g Graph,
     inertia: &mut Inertia6<'g>,

@@ -44,12 +44,12 @@ const HALVINGS: usize = 30;
 /// What happens to the rank of the constraints along a smooth motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Rank {
-    /// It is not lost.
+    /// The rank is not lost.
     Full,
-    /// It is lost at a state that satisfies the constraints: motions cross there.
+    /// The rank is lost at a state that satisfies the constraints: motions cross there.
     Lost,
-    /// It is lost at a state that does not satisfy them: this is not a motion, since it leaves the surface for
-    /// another sheet of it.
+    /// The rank is lost at a state that does not satisfy the constraints: the curve is not a motion there,
+    /// since it leaves the surface for another of its sheets.
     Passed,
 }
 
@@ -155,8 +155,8 @@ impl Motion {
         Some((motion, rank))
     }
 
-    /// Whether a polynomial may replace the motion: it has no derivatives with respect to state and parameters, and
-    /// does not represent forces that jump or have corners.
+    /// Whether a polynomial may replace the motion: a polynomial has no derivatives with respect to state and
+    /// parameters, and cannot represent forces that jump or have corners.
     fn takes_bridge(&self, from: f64, end: f64) -> bool {
         let has_derivatives = self.options.jvp || self.options.parameter_jacobian;
         let breaks = self.signals.breaks().iter().any(|&t| (t - from) * (t - end) <= 0.0);

@@ -22,7 +22,7 @@ const SQUARE_OF_ROUNDING: f64 = 2.0 * f64::EPSILON * f64::EPSILON;
 /// and their rounding errors, large.
 ///
 /// # Errors
-/// [`EvaluationFailure::Pivot`] with the index of the first that vanishes.
+/// [`EvaluationFailure::Pivot`] with the index of the first pivot that vanishes.
 #[inline]
 pub(crate) fn check(pivots: &[f64], sizes: &[f64]) -> Result<(), EvaluationFailure> {
     let largest = sizes.iter().fold(0.0f64, |largest, size| largest.max(size.abs()));
@@ -68,7 +68,7 @@ const LARGEST: usize = 1;
 const ALL: usize = 2;
 
 impl PivotPartition {
-    /// The number of fixed numbers.
+    /// How many fixed numbers there are.
     pub(crate) fn fixed_len(&self) -> usize {
         ALL + self.fixed.len()
     }
@@ -163,7 +163,7 @@ impl Pivots {
     /// Checks that no pivot vanishes; `moving` are the values of the numbers that change.
     ///
     /// # Errors
-    /// [`EvaluationFailure::Pivot`] for the first that vanishes.
+    /// [`EvaluationFailure::Pivot`] for the first pivot that vanishes.
     #[inline]
     pub(crate) fn check(
         &mut self,

@@ -8,7 +8,7 @@ use crate::compiled::failure::EvaluationFailure;
 /// A pivot of the constraints this small relative to their largest coefficient is treated as rounding error.
 const VANISHING_PIVOT: f64 = 1e-12;
 
-/// A spare row replaces another row if its pivot times this is still larger.
+/// A spare row replaces another row if the spare row's pivot is larger even when multiplied by this.
 const SPARE: f64 = 1e-2;
 
 /// The symmetric matrix
@@ -95,7 +95,7 @@ impl Saddle {
         outcome.map_err(|failure| failure.at_place(|index| self.columns[self.rank + index]))
     }
 
-    /// As [`factorise`](Saddle::factorise), but stops once the dependent unknowns are known.
+    /// Like [`factorise`](Saddle::factorise), but stops once the dependent unknowns are known.
     ///
     /// # Errors
     /// As there.
@@ -316,11 +316,11 @@ pub(crate) struct Independence {
 /// A pivot of C.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pivot {
-    /// The index of its constraint.
+    /// The index of the constraint to which the pivot belongs.
     pub(crate) constraint: usize,
-    /// The unknown that it determines.
+    /// The unknown that the constraint determines.
     pub(crate) unknown: usize,
-    /// Its size, in units in which the mass of that unknown is 1.
+    /// The size of the pivot, in units in which the mass of that unknown is 1.
     pub(crate) size: f64,
 }
 

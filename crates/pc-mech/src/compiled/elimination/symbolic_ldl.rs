@@ -137,7 +137,8 @@ impl<'g> Ldl<'g> {
     }
 
     /// Whether the determinant of a matrix of two rows is a much shorter expression than the pivots whose
-    /// product it is: for a relativistic particle it is a power of the radicand in the Lagrangian.
+    /// product it is: for a relativistic particle the determinant is a power of the radicand in the
+    /// Lagrangian.
     fn is_longer(&self, graph: &'g Graph, m: &Matrix<Expr<'g>>) -> bool {
         let (2, Some(&last)) = (m.rows(), self.order.last()) else { return false };
         if !graph.know_root_powers(&m.nonzero_entries()) {
@@ -207,7 +208,7 @@ impl<'g> Ldl<'g> {
         Some(ldl)
     }
 
-    /// As `solve`, but only for the unknowns that depend on the given entries of r.
+    /// Like `solve`, but only for the unknowns that depend on the given entries of r.
     fn solve_nonzero(&self, graph: &'g Graph, right: &[(usize, Expr<'g>)]) -> Entries<'g> {
         let mut z: BTreeMap<usize, Expr<'g>> = right.iter().copied().collect();
         let zero = |z: &BTreeMap<usize, Expr<'g>>, i: usize| z.get(&i).copied().unwrap_or(Expr::ZERO);

@@ -198,7 +198,7 @@ impl Surface {
     /// Moves the η of `y` to g = 0; x is unchanged.
     ///
     /// # Errors
-    /// As [`project`](Surface::project).
+    /// As for [`project`](Surface::project).
     pub(crate) fn project_velocities(
         &mut self,
         t: f64,

@@ -1,4 +1,4 @@
-//! Projection to the surface with some components of the state unchanged.
+//! Projection onto the surface with some components of the state unchanged.
 
 use pc_algebra::Matrix;
 

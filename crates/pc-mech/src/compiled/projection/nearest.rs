@@ -54,7 +54,7 @@ impl Surface {
         outcome
     }
 
-    /// The range of η in a state.
+    /// The range of indices of η in a state.
     pub(super) fn moving(&self) -> std::ops::Range<usize> {
         self.coordinates..self.coordinates + self.k
     }
