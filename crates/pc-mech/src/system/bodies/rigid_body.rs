@@ -48,8 +48,8 @@ pub struct RigidBody<'g> {
 
 /// A symmetric inertia matrix.
 ///
-/// The matrix is made from three principal moments `[Ixx, Iyy, Izz]`, or of six entries `[Ixx, Iyy, Izz, Ixy, Iyz,
-/// Ixz]`. The six are the entries of the matrix, with their signs: Ixy = −∫ xy dm.
+/// The matrix is made from three principal moments `[Ixx, Iyy, Izz]`, or from six entries
+/// `[Ixx, Iyy, Izz, Ixy, Iyz, Ixz]`. The six are the entries of the matrix, with their signs: Ixy = −∫ xy dm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inertia<'g>([Expr<'g>; 6]);
 
