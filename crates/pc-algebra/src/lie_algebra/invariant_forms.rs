@@ -32,8 +32,8 @@ impl LieAlgebra {
     /// A basis of the symmetric bilinear forms B with B([x, y], z) + B(y, [x, z]) = 0: the solutions of
     /// c_rs^p B_pm + c_rm^p B_sp = 0, as k × k matrices with coprime integer entries.
     ///
-    /// The Killing form is one of them; if one of them is regular, coadjoint motion is equivalent to adjoint
-    /// motion.
+    /// The Killing form is one of these forms; if any of the forms is regular, coadjoint motion is equivalent
+    /// to adjoint motion.
     ///
     /// # Errors
     /// [`AlgebraError::NotRational`].

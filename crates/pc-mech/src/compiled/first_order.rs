@@ -33,9 +33,9 @@ pub(crate) struct FirstOrder<'g> {
     pub(crate) states: usize,
     /// The parameters with their values.
     pub(crate) parameters: Vec<(Expr<'g>, f64)>,
-    /// Parameters that may change at each evaluation: functions of time, and forces computed outside.
+    /// Parameters that may change at each evaluation: functions of time, and external forces.
     pub(crate) varying: Vec<Expr<'g>>,
-    /// The symbols of w, k of them.
+    /// The k symbols of w.
     pub(crate) unknowns: Vec<Expr<'g>>,
     /// The names of the unknowns in messages: the quasi-velocities.
     pub(crate) names: Vec<String>,

@@ -36,7 +36,7 @@ impl<'g> Multipliers<'g> {
     ///
     ///   (C M⁻¹ Cᵀ) λ = −ċ − C M⁻¹ r,   ċ = (∂g/∂x) ẋ + ∂g/∂t,
     ///
-    /// m of them, in terms of (t, x, η). These reactions keep g constant, whatever its value.
+    /// of which there are m, in terms of (t, x, η). These reactions keep g constant, whatever its value.
     ///
     /// ```
     /// use pc_mech::{Constraint, Graph, System};
@@ -83,9 +83,9 @@ impl<'g> Multipliers<'g> {
         Some(self.constraints()[dependent].name().to_owned())
     }
 
-    /// The system of all velocities on which the [reactions](Multipliers::reactions_of_state) act as forces
-    /// Q_s + C_αs λ_α of the state: its equations (9) are the equations of motion, in every form, and the constraints
-    /// are integrals. Numerical drift from the constraints is not corrected.
+    /// The system of all velocities on which the [reactions](Multipliers::reactions_of_state) act as forces, Q_s +
+    /// C_αs λ_α, that depend on the state: its equations (9) are the equations of motion, in every form, and the
+    /// constraints are integrals. Numerical drift from the constraints is not corrected.
     ///
     /// # Errors
     /// As for [`reactions_of_state`](Multipliers::reactions_of_state).

@@ -18,10 +18,10 @@ use crate::system::system::System;
 ///
 ///   M η̇ = r + Cᵀ λ,   C η̇ = −(dC/dt) η − dc_0/dt,   ẋ = b η + b_0,
 ///
-/// of a system whose quasi-velocities are bound by C η + c_0 = 0: conditions on velocities, or the derivatives
-/// C_αs = X_s f_α, c_α0 = X_0 f_α of conditions on positions. M and r are those of (9); λ_α is the reaction
-/// conjugate to the condition, and its power is −λ_α c_α0. For [nonlinear](Constraint::nonlinear) conditions
-/// g(t, x, η) = 0, C is ∂g/∂η, and C η̇ = −(∂g/∂x) ẋ − ∂g/∂t.
+/// of a system whose quasi-velocities are constrained by C η + c_0 = 0: conditions on velocities, or the
+/// derivatives C_αs = X_s f_α, c_α0 = X_0 f_α of conditions on positions. M and r are those of (9); λ_α is the
+/// reaction conjugate to the condition, and its power is −λ_α c_α0. For [nonlinear](Constraint::nonlinear)
+/// conditions g(t, x, η) = 0, C is ∂g/∂η, and C η̇ = −(∂g/∂x) ẋ − ∂g/∂t.
 ///
 /// All k quasi-velocities are components of the state. At each evaluation the quasi-velocities that determine the
 /// others best are taken as independent, so the only singular positions are those where the constraints themselves

@@ -10,8 +10,8 @@ use crate::emit::{c, rust};
 use crate::equations::poincare::Equations;
 use crate::error::{MechError, ShapeError};
 
-/// The product of the operations of a right-hand side and the length of the state beyond which the Jacobian has
-/// some ten thousand operations: too many to read, and enough to keep a compiler busy for minutes.
+/// If the number of operations of a right-hand side times the length of the state exceeds this, the Jacobian
+/// has some ten thousand operations: too many to read, and enough to keep a compiler busy for minutes.
 const LONG_JACOBIAN: usize = 30_000;
 
 /// Equations longer than this are left out of the comment at the head of a file.

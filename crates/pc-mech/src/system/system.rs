@@ -307,7 +307,7 @@ impl<'g> System<'g> {
     /// The same system with further generalised forces, one for each quasi-velocity.
     ///
     /// # Errors
-    /// [`ShapeError`](crate::ShapeError) if there are more or fewer of them.
+    /// [`ShapeError`](crate::ShapeError) if the number of forces differs from that of the quasi-velocities.
     pub fn with_added_forces(&self, more: &[Expr<'g>]) -> Result<System<'g>, MechError> {
         shape("the list of forces", more.len(), self.forces.len())?;
         Ok(System {

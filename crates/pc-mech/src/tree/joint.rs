@@ -139,7 +139,7 @@ impl<'g> Joint<'g> {
         }
     }
 
-    /// Names of the coordinates and quasi-velocities for a body with that name.
+    /// The names of the coordinates and quasi-velocities of the joint, for a body with the given name.
     pub(crate) fn names_for(&self, body: &str) -> (Vec<String>, Vec<String>) {
         self.names.clone().unwrap_or_else(|| self.kind.names(body))
     }

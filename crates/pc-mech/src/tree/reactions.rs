@@ -9,8 +9,8 @@ use crate::tree::system::TreeSystem;
 
 /// The force and the moment that a joint exerts on its body, in terms of (t, x, η, η̇).
 ///
-/// Both are along the axes of the body, and the moment is about its origin. Their components in the free
-/// directions of the joint are the generalised forces on the joint.
+/// Force and moment are along the axes of the body, and the moment is about its origin. Their components in
+/// the free directions of the joint are the generalised forces on the joint.
 #[derive(Clone, Debug)]
 pub struct JointReaction<'g> {
     pub(crate) body: String,

@@ -40,8 +40,8 @@ impl DenseLdl {
         }
     }
 
-    /// Factorises M, given by its `values` at the indices `lower` on and below the diagonal; all must be
-    /// finite.
+    /// Factorises M, given by its `values` at the indices `lower` on and below the diagonal; all values must
+    /// be finite.
     ///
     /// # Errors
     /// [`EvaluationFailure::Pivot`] for the first pivot that vanishes.

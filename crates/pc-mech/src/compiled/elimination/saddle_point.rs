@@ -80,8 +80,8 @@ impl Saddle {
         }
     }
 
-    /// Factorises the matrix, given by its `values` at the indices `lower` on and below the diagonal; all must
-    /// be finite.
+    /// Factorises the matrix, given by its `values` at the indices `lower` on and below the diagonal; all
+    /// values must be finite.
     ///
     /// # Errors
     /// [`EvaluationFailure::Constraint`] with k plus the index of the constraint whose unknowns the others
@@ -143,7 +143,7 @@ impl Saddle {
 
     /// Factorises C = L U, up to the order of rows and columns, with complete pivoting. Coefficients are compared after
     /// division by the largest of their row and by the square root of the mass of their unknown, so that units do not
-    /// matter; an unknown without mass is treated as if it had the smallest mass of the others.
+    /// matter; an unknown without mass is treated as if it had the smallest of the other masses.
     fn pivot(&mut self) -> Result<(), EvaluationFailure> {
         let (k, m) = (self.k, self.m);
         let (mass, constraints) = (&self.mass, &self.constraints);

@@ -34,8 +34,8 @@ pub(crate) struct Schur {
 }
 
 impl Schur {
-    /// The solver for a tree with the given rows of C and γ; `None` if a joint has inertia only through a
-    /// loop.
+    /// The solver for a tree with the given rows of C and entries of γ; `None` if a joint has inertia only
+    /// through a loop.
     ///
     /// # Errors
     /// As for [`Program::new`].

@@ -63,8 +63,8 @@ impl<'g> Factors<'g> {
         }
     }
 
-    /// The pivots D with the diagonal entries of M before elimination; or, if a small M is inverted, its
-    /// determinant with a scale computed from its largest entry.
+    /// The pivots D with the diagonal entries of M before elimination; or, if a small M is inverted, the
+    /// determinant of M with a scale computed from its largest entry.
     pub(crate) fn watched(&self, graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Vec<Watched<'g>> {
         let rows = m.rows();
         match self {

@@ -20,8 +20,8 @@ const HALVINGS: i32 = 20;
 /// step is damped, or is only rounding error.
 const CONVERGING: f64 = 0.25;
 
-/// The residual of f that a single rounding may cause, relative to the bound for all of them. Moving a state to
-/// remove it would add noise to the differences from which an integrator predicts the motion.
+/// The residual of f that a single rounding may cause, relative to the bound for all rounding errors together.
+/// Moving a state to remove it would add noise to the differences from which an integrator predicts the motion.
 const ONE_ROUNDING: f64 = 0.125;
 
 /// A step that could be caused by errors of f this many times their bounds is treated as rounding error: f has

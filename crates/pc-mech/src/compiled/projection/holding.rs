@@ -24,8 +24,8 @@ pub(crate) struct PrescribedComponents<'a> {
 }
 
 impl Surface {
-    /// Moves the components of `y` that are not `held` to the surface, x and then η, by the shortest steps δπ
-    /// in the kinetic metric with
+    /// Moves the components of `y` that are not `held` onto the surface, x first and then η, by the shortest
+    /// steps δπ in the kinetic metric with
     ///
     ///   (∂f/∂π) δπ = −f,   (b δπ)_i = 0 for the x_i held,   and   C δη = −g,   δη_s = 0 for the η_s held.
     ///

@@ -141,7 +141,7 @@ impl KeptIntegrals {
         self.gradients.eval(t, y, p, &mut self.room.entries);
     }
 
-    /// Projects to I(t, y) = I_0 by Newton's method, each step being the shortest possible.
+    /// Projects onto I(t, y) = I_0 by Newton's method, each step being the shortest possible.
     ///
     /// # Errors
     /// [`EvaluationFailure::NotKept`] if the steps do not become shorter, [`EvaluationFailure::Expr`] for

@@ -9,8 +9,8 @@ use crate::equations::poincare::Equations;
 use crate::error::{IntegralError, MechError};
 use pc_expr::VectorField;
 
-/// A rate of change counts as nonzero above this fraction of the size of its terms, which is far above rounding
-/// errors.
+/// A rate of change counts as nonzero if it exceeds this fraction of the size of its terms; the fraction is far
+/// above rounding errors.
 const RATE: f64 = 1e-9;
 
 /// A rate is itself a rounding error if it changes by more than this fraction when the last digits change.

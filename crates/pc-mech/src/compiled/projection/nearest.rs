@@ -63,9 +63,8 @@ impl Surface {
     ///
     ///   M (η − η₀) = Cᵀ μ.
     ///
-    /// Each step to g = 0 is the shortest possible, but the path that the steps make up is not, and it
-    /// depends on the choice of quasi-velocities. Where g is affine in η a single step leads to the nearest
-    /// point.
+    /// Each step to g = 0 is the shortest possible, but the whole path is not the shortest, and it depends on
+    /// the choice of quasi-velocities. Where g is affine in η a single step leads to the nearest point.
     fn approach(
         &mut self,
         given: &[f64],

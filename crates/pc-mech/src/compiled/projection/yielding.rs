@@ -54,8 +54,8 @@ impl Surface {
     ///
     ///   N C_H δ_H = −N g,   C_F δ_F = −g − C_H δ_H,
     ///
-    /// where N is the projection to the combinations of constraints that C_F does not affect: the conditions on
-    /// held velocities alone.
+    /// where N is the projection onto the combinations of constraints that C_F does not affect: the conditions
+    /// on held velocities alone.
     fn least_change(
         &mut self,
         Coefficients { mass, constraints }: &Coefficients,
