@@ -65,7 +65,7 @@ pub(crate) struct FirstOrder<'g> {
 /// The left-hand side of p(t, y, w) = r(t, y), which is not linear in w.
 #[derive(Clone, Debug)]
 pub(crate) struct Implicit<'g> {
-    /// p, k of them.
+    /// The k components of p.
     pub(crate) left: Vec<Expr<'g>>,
     /// The w from which the iteration starts.
     pub(crate) guess: Vec<f64>,

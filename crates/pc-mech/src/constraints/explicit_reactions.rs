@@ -34,9 +34,9 @@ impl<'g> Multipliers<'g> {
 
     /// The reactions as functions of the state: from M η̇ = r + Cᵀ λ and C η̇ = −ċ,
     ///
-    ///   (C M⁻¹ Cᵀ) λ = −ċ − C M⁻¹ r,   ċ = (∂g/∂x) ẋ + ∂g/∂t,
+    ///   (C M⁻¹ Cᵀ) λ = −ċ − C M⁻¹ r,   ċ = (∂g/∂x) ẋ + ∂g/∂t.
     ///
-    /// of which there are m, in terms of (t, x, η). These reactions keep g constant, whatever its value.
+    /// There are m of these expressions, in terms of (t, x, η). The reactions keep g constant, whatever its value.
     ///
     /// ```
     /// use pc_mech::{Constraint, Graph, System};
