@@ -36,7 +36,7 @@ pub enum AlgebraError {
         "the definitions of the quasi-velocities cannot be solved for the velocities: their matrix is singular everywhere"
     )]
     SingularDefinitions,
-    /// Operators without coordinates on which to act, so that their brackets must be given.
+    /// Operators that have no coordinates to act on, so that their brackets must be given.
     #[error(
         "a frame without coordinates does not determine its structure coefficients: the algebra must be given"
     )]
@@ -55,7 +55,8 @@ pub enum AlgebraError {
         /// The first pair whose bracket has no constant coefficients.
         pair: (usize, usize),
     },
-    /// Operators with a combination that vanishes everywhere; any multiple of it could be added to a bracket.
+    /// Operators of which a combination vanishes everywhere; any multiple of this combination could be added
+    /// to a bracket.
     #[error(
         "the frame does not determine its structure coefficients: {}, with rank {rank} of {operators}: the algebra must \
          be given",
@@ -66,8 +67,8 @@ pub enum AlgebraError {
         rank: usize,
         /// Number of operators.
         operators: usize,
-        /// The combination: numbers of operators, from 1, each with its coefficient as text, which are functions of
-        /// parameters and time. Empty if it was not found.
+        /// The combination: the numbers of operators, from 1, each with its coefficient as text. Coefficients are
+        /// functions of parameters and time. Empty if no combination was found.
         combination: Vec<(usize, String)>,
     },
     /// A commutator outside the span of the operators.
@@ -82,7 +83,7 @@ pub enum AlgebraError {
         /// Residual relative to the size of the commutator.
         residual: f64,
     },
-    /// Given structure coefficients that are not those of the frame.
+    /// Structure coefficients that were given but are not those of the frame.
     #[error(
         "the given algebra contradicts the frame: [X_{}, X_{}] differs from c_rs^m X_m (relative residual {residual:.1e})",
         pair.0, pair.1
@@ -164,9 +165,9 @@ pub enum AlgebraError {
     IrrationalEntry {
         /// The matrix.
         what: &'static str,
-        /// Its row, from 1.
+        /// The row of the entry, counted from 1.
         row: usize,
-        /// Its column, from 1.
+        /// The column of the entry, counted from 1.
         column: usize,
         /// The entry.
         value: String,
@@ -183,9 +184,9 @@ pub enum AlgebraError {
     NotRepresentation {
         /// The pair, from 1.
         pair: (usize, usize),
-        /// Row of the first entry that differs, from 1.
+        /// The row of the first entry that differs, counted from 1.
         row: usize,
-        /// Its column, from 1.
+        /// The column of the entry, counted from 1.
         column: usize,
     },
     /// Matrices that are linearly dependent, and so are not a basis.
@@ -194,7 +195,7 @@ pub enum AlgebraError {
         /// The number of the first matrix that depends on the preceding ones, from 1.
         number: usize,
     },
-    /// Matrices whose commutators leave their span.
+    /// Matrices whose commutators lie outside their span.
     #[error("the commutator of the matrices number {} and {} is not in their span", pair.0, pair.1)]
     NotMatrixAlgebra {
         /// The pair, from 1.
@@ -228,13 +229,13 @@ pub enum AlgebraError {
         /// The text.
         axes: String,
     },
-    /// Coordinates for which the group has no nearest element.
+    /// Coordinates to which no element of the group is nearest.
     #[error("{element:?} has no nearest element of the group")]
     NoNearestElement {
         /// The numbers.
         element: Vec<f64>,
     },
-    /// Frames with different coordinates or times.
+    /// Frames with different coordinates or different symbols for time.
     #[error("the two frames do not have the same coordinates and time")]
     DifferentSpaces,
     /// Operators that are linearly dependent at each point, so that velocities do not determine

@@ -1,9 +1,9 @@
-//! Verdicts on identities, including those that the graph does not decide: proved, open, disproved.
+//! Verdicts on identities, including identities that the graph does not decide: proved, open, or disproved.
 //!
-//! `identity` is the verdict; `sample` evaluates at pseudo-random points near a state, with numbers
-//! that distinguish a small value from the rounding error of zero ([`Weighed`](pc_expr::Weighed));
-//! `magnitudes` finds those of the symbols in the units of the expressions; `jump` finds points at
-//! which an expression jumps, and `discontinuity` finds surfaces on which functions jump, from their
+//! `identity` is the verdict; `sample` evaluates expressions at pseudo-random points near a state, with
+//! numbers that distinguish a small value from the rounding error of zero ([`Weighed`](pc_expr::Weighed));
+//! `magnitudes` finds the orders of magnitude of symbols in the units of the expressions; `jump` finds points
+//! at which an expression jumps, and `discontinuity` finds surfaces on which functions jump, from their
 //! values alone.
 
 pub(crate) mod discontinuity;

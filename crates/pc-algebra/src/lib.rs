@@ -7,26 +7,26 @@
 //! # Frame
 //!
 //! A mechanical system with coordinates x_1..x_n need not be described by the velocities ẋ. Quasi-velocities
-//! η_1..η_k are affine in them, η = a ẋ + a_0 (2); solved for the velocities,
+//! η_1..η_k are affine in the velocities, η = a ẋ + a_0 (2); solved for ẋ,
 //!
 //! ẋ = b η + b_0 (3), where b is an n × k matrix, and all coefficients may depend on t and x.
 //!
-//! A [`Frame`] consists of b and b_0, and is made [from velocities](Frame::from_velocities) (3) or [from
+//! A [`Frame`] consists of b and b_0, and can be made [from velocities](Frame::from_velocities) (3) or [from
 //! definitions](Frame::from_definitions) (2). If n > k it also represents constraints (1), which the motion ẋ =
 //! b η + b_0 satisfies for every η.
 //!
 //! # Operators
 //!
 //! The columns of b are the operators X_s f = b_is ∂f/∂x_i and X_0 f = ∂f/∂t + b_i0 ∂f/∂x_i (4); the rate of
-//! change of f along a motion is X_0 f + η_s X_s f. [`Frame::apply`] applies them, [`Frame::commutator`] is
-//! \[X_r, X_s\].
+//! change of f along a motion is X_0 f + η_s X_s f. [`Frame::apply`] applies the operators to functions, and
+//! [`Frame::commutator`] returns \[X_r, X_s\].
 //!
 //! # Structure coefficients and closure
 //!
-//! If the commutators are combinations of the operators again, \[X_r, X_s\] = c_rs^m X_m (5) with r, s from 0
+//! If the commutators are again combinations of the operators, \[X_r, X_s\] = c_rs^m X_m (5) with r, s from 0
 //! and m from 1, the frame is closed and the c_rs^m are its [`StructureCoefficients`].
 //! [`Frame::structure_coefficients`] finds them from the frame alone, in agreement with (6), and reports the
-//! pair if there is no such combination:
+//! first pair whose commutator is not such a combination:
 //!
 //! ```
 //! use pc_algebra::{EulerAngles, Frame, LieAlgebra, LieGroup, Neighbourhood};
@@ -72,18 +72,18 @@
 //!
 //! # Lie group
 //!
-//! A [`LieGroup`] has such an algebra: [`RotationMatrices`], [`UnitQuaternions`] and [`EulerAngles`] for so(3),
-//! [`PlaneRotations`], [`PlaneMotions`], [`RigidMotions`], [`HeisenbergGroup`], and every [`DirectProduct`]. A
-//! group provides exact frames: body velocities [on the left](LieGroup::left_frame), whose structure
-//! coefficients are the constants of the algebra, and spatial velocities [on the right](LieGroup::right_frame),
-//! whose structure coefficients have the opposite sign. It also provides numbers, for integrators and initial
-//! values: [`LieGroup::exp`] and its derivative, [`LieGroup::log`], [`LieGroup::compose`],
-//! [`LieGroup::project`].
+//! Each [`LieGroup`] has a Lie algebra: [`RotationMatrices`], [`UnitQuaternions`] and [`EulerAngles`] for
+//! so(3), [`PlaneRotations`], [`PlaneMotions`], [`RigidMotions`], [`HeisenbergGroup`], and every
+//! [`DirectProduct`]. A group provides exact frames: body velocities [on the left](LieGroup::left_frame), whose
+//! structure coefficients are the constants of the algebra, and spatial velocities [on the
+//! right](LieGroup::right_frame), whose structure coefficients have the opposite sign. It also provides
+//! numbers, for integrators and initial values: [`LieGroup::exp`] and its derivative, [`LieGroup::log`],
+//! [`LieGroup::compose`], [`LieGroup::project`].
 //!
 //! # Around it
 //!
-//! Below this crate: [`pc_expr`], its expressions. Above it: [pc-mech](../pc_mech/index.html), which puts a
-//! Lagrangian on a frame.
+//! Below this crate: [`pc_expr`], which provides its expressions. Above it: [pc-mech](../pc_mech/index.html),
+//! which puts a Lagrangian on a frame.
 
 mod error;
 mod frame;

@@ -3,13 +3,13 @@
 //! All equations are brought into the form of one kind of [first-order system](first_order::FirstOrder), ẏ = g(t, y, w) with
 //! M w = r. Read that first, then `elimination` (how w is found), `implicit` (equations that are not linear in w), `compile`,
 //! and `motion`, the resulting `vector_field`, with `options` and `machine_code`. Under constraints states lie on a manifold,
-//! to which `projection` and `on_constraints` return them; integrals can be kept constant in the same way.
-//! `legendre_transform` converts momenta into quasi-velocities and back; `in_momenta` is the motion of momenta under
-//! constraints, `forced_motion` the motion under forces computed outside. `running_error` bounds rounding errors, `point`
-//! holds the arguments of evaluations, `chart` detects where quasi-velocities and velocities no longer determine each other,
-//! `change_point` detects where constraints lose rank; `mass_factors` solves with M alone; `jumps` finds where rates jump,
-//! `switches` keeps piecewise rates on one side of these jumps, with the `surface_slopes` between them, and `failure` says
-//! why rates are undefined.
+//! to which `projection` and `on_constraints` return them; a projection can also keep integrals constant.
+//! `legendre_transform` converts momenta into quasi-velocities and back; `in_momenta` is the motion in momenta under
+//! constraints, `forced_motion` the motion under forces that the caller computes. `running_error` bounds rounding
+//! errors, `point` holds the arguments at which functions are evaluated, `chart` detects where quasi-velocities and
+//! velocities no longer determine each other, `change_point` detects where constraints lose rank; `mass_factors` solves
+//! equations with the matrix M alone; `jumps` finds where rates jump, `switches` keeps piecewise rates on one side of
+//! these jumps, with the `surface_slopes` between them, and `failure` says why rates are undefined.
 
 pub(crate) mod change_point;
 pub(crate) mod chart;

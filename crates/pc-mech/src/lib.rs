@@ -12,7 +12,7 @@
 //! ẋ = b η + b_0 (3), \[X_r, X_s\] = c_rs^m X_m (5), L(t, x, η) = T + U with U minus the potential energy, and
 //! Q_s (8), the force conjugate to η_s.
 //!
-//! [`System::builder`] takes each of these in the form in which books give it. The frame is given by [velocities in
+//! [`System::builder`] takes each part in the form in which books give it. The frame is given by [velocities in
 //! terms of η](SystemBuilder::kinematics) or as a [`Frame`](SystemBuilder::frame); without either, η = ẋ. The
 //! [algebra](SystemBuilder::algebra) is needed only where b does not determine it, because its rank is below k. The
 //! Lagrangian is the sum of [T](SystemBuilder::kinetic), [−V](SystemBuilder::potential), [L(t, x,
@@ -86,9 +86,9 @@
 //!
 //! d/dt ∂L/∂ẋ_s − ∂L/∂x_s − b_js ∂L/∂x_j = Q_s (14)–(16),
 //!
-//! which are fewer, without reactions, and singular where the choice of velocities is. The first form is for long
-//! motions and for reactions, the second for further transformations of a system; its canonical equations are (17).
-//! The second form refuses constraints on velocities that are not integrable, which `pc-nonholo` treats.
+//! which are fewer, contain no reactions, and are singular where the choice of velocities is. The first form is for
+//! long motions and for reactions, the second for further transformations of a system; its canonical equations are
+//! (17). The second form refuses constraints on velocities that are not integrable, which `pc-nonholo` treats.
 //!
 //! ```
 //! use pc_mech::{Constraint, Graph, System};
@@ -122,9 +122,9 @@
 //!
 //! ẏ_s = (c_rs^m ∂H/∂y_r + c_0s^m) y_m − X_s H + Q_s (10), ẋ_i = b_i0 + b_is ∂H/∂y_s (11).
 //!
-//! [`System::canonical`] gives them as [`Canonical`]. For a quadratic L, η is an expression; for any other it is found
-//! by Newton's method at each evaluation ([`Canonical::is_closed`] says which). [`LegendreTransform`] converts states
-//! in both directions.
+//! [`System::canonical`] gives them as [`Canonical`]. For a quadratic L, η is an expression; for any other L, η is
+//! found by Newton's method at each evaluation ([`Canonical::is_closed`] says which). [`LegendreTransform`] converts
+//! states in both directions.
 //!
 //! ```
 //! use pc_mech::{Graph, System};
@@ -180,13 +180,13 @@
 //! A quantity that evolves with a system but is not part of its frame, such as the current in a motor, is a
 //! first-order [state](SystemBuilder::state) z with ż = h(t, x, η, z). L and Q may depend on it; d/dt ∂L/∂η_s
 //! in (9) then has the term ż ∂²L/∂η_s∂z, and dH/dt the term −ż ∂L/∂z. Parameters that are functions of time
-//! are [signals](SystemBuilder::signal); a motion reads them from [tables](Motion::driven_by).
+//! are [signals](SystemBuilder::signal); a motion reads their values from [tables](Motion::driven_by).
 //!
 //! # Numbers and source
 //!
 //! [`Equations::compile`], [`Canonical::compile_for`] and [`Multipliers::compile`] make a [`Motion`], a
-//! [`VectorField`] ẏ = f(t, y) that owns everything it needs; [`CompileOptions`] say which derivatives it has,
-//! and for which kernel it is compiled. Parameters stay adjustable. Integrals, energy and outputs are
+//! [`VectorField`] ẏ = f(t, y) that owns everything it needs; [`CompileOptions`] determine which derivatives it
+//! has, and for which kernel it is compiled. Parameters stay adjustable. Integrals, energy and outputs are
 //! [observed](Motion::observe). With an [`ExternalForce`] the result is a [`ForcedMotion`]. [`Equations::emit`]
 //! writes the same operations as C or Rust without dependencies.
 //!

@@ -2,8 +2,9 @@
 //!
 //! The description of a system, in the form in which books give it, becomes a [`System`](system::System). Read `system`, then `builder`,
 //! which takes each part in its usual form, and `build`, which combines them; `continuity` checks for jumps; `bodies` are the
-//! contributions of particles and rigid bodies, `forces` the forms of Q_s (8), `external_force` forces computed outside, `states` checks
-//! for first-order states, `signals` inputs that are functions of time; `energy_rate` is the rate of the energy.
+//! contributions of particles and rigid bodies, `forces` the forms of Q_s (8), `external_force` forces that the caller
+//! computes, `states` checks for first-order states, and `signals` inputs that are functions of time; `energy_rate` is
+//! the rate of the energy.
 
 pub(crate) mod bodies;
 pub(crate) mod build;

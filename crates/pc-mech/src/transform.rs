@@ -1,4 +1,4 @@
-//! Transformations of a system into another one with the same motions.
+//! Transformations of a system into another system with the same motions.
 //!
 //! `quasi_velocities` changes to other η, `lagrange` changes back to ẋ, `velocities` converts states
 //! between them; `restriction` keeps the last η at zero, `reduction` leaves out ignorable coordinates, and

@@ -29,8 +29,8 @@ impl<'g> Frame<'g> {
     /// # Errors
     /// [`AlgebraError::DifferentSpaces`]; [`AlgebraError::Shape`] if the numbers of operators differ;
     /// [`AlgebraError::DependentOperators`] if one of the frames has rank b < k;
-    /// [`AlgebraError::DifferentVelocities`] with the first operator, 0 for the drift, that `other` does not
-    /// allow.
+    /// [`AlgebraError::DifferentVelocities`] with the first operator that `other` does not allow, 0 for the
+    /// drift.
     ///
     /// ```
     /// # use pc_algebra::{EulerAngles, LieGroup, Neighbourhood};
@@ -120,7 +120,7 @@ impl<'g> Frame<'g> {
     }
 }
 
-/// Whether η' = A η + A_0 is η: the expensive products are then unnecessary.
+/// Whether η' = A η + A_0 equals η, which makes the expensive products unnecessary.
 fn is_identity(a: &Matrix<Expr<'_>>, a0: &[Expr<'_>]) -> bool {
     let entry = |i: usize, j: usize| a[(i, j)] == if i == j { Expr::ONE } else { Expr::ZERO };
     a0.iter().all(|a0| a0.is_zero()) && (0..a.rows()).all(|i| (0..a.columns()).all(|j| entry(i, j)))

@@ -1,4 +1,4 @@
-//! Finds and checks the structure coefficients of a frame (6), and checks its closure.
+//! Finds and checks the structure coefficients (6) of a frame, and checks that the frame is closed.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -18,10 +18,11 @@ type JacobiDefects<'g> = BTreeMap<(usize, usize, usize), BTreeMap<usize, Vec<Exp
 impl<'g> Frame<'g> {
     /// The structure coefficients of the frame (6), found from b and b_0 alone.
     ///
-    /// If rank b = k they solve b c_rs = [X_r, X_s] in the least-squares sense, c_rs = (bᵀb)⁻¹bᵀ[X_r, X_s]. If
-    /// rank b < k that would lose the part of c along ker b; so coefficients are sought that hold at all
-    /// points and depend only on parameters and time. The frame determines them if no combination of the
-    /// operators with such coefficients vanishes. In both cases the result reproduces every commutator.
+    /// If rank b = k, the coefficients solve b c_rs = [X_r, X_s] in the least-squares sense, c_rs =
+    /// (bᵀb)⁻¹bᵀ[X_r, X_s]. If rank b < k, least squares would lose the part of c along ker b; so coefficients
+    /// are sought that hold at all points and depend only on parameters and time. The frame determines these
+    /// coefficients if no combination of the operators with coefficients of this kind vanishes. In both cases
+    /// the result reproduces every commutator.
     ///
     /// `near` is a neighbourhood in which the expressions of the frame are regular.
     ///
@@ -175,9 +176,9 @@ impl<'g> Frame<'g> {
     /// The left inverse (bᵀWb)⁻¹bᵀW with the [weights](Self::weights) W of the coordinates, or b⁻¹ if b is
     /// square; `None` if rank b < k.
     ///
-    /// Coordinates that [follow](Self::followers) others are left out: if the remaining b is square, b⁻¹ is as
-    /// accurate as b itself, while bᵀb squares the condition number of b and, with rounded constants, hides
-    /// cancellations.
+    /// Coordinates that [follow](Self::followers) others are left out, because, if the remaining b is square,
+    /// b⁻¹ is as accurate as b itself, while bᵀb squares the condition number of b and, with rounded
+    /// constants, hides cancellations.
     pub(crate) fn left_inverse(&self) -> Option<Matrix<Expr<'g>>> {
         let (graph, b, k) = (self.graph(), self.b(), self.operators());
         if b.rows() == k {
@@ -201,9 +202,9 @@ impl<'g> Frame<'g> {
         }))
     }
 
-    /// The weights of the coordinates. They are 1, except for powers of 2 for coordinates in whose units the
-    /// velocities are so small that bᵀb would lose them among the others, and 0 for coordinates whose
-    /// velocities are only rounding errors.
+    /// The weights of the coordinates. Most weights are 1. Coordinates in whose units the velocities are so
+    /// small that bᵀb would lose them among the others are weighted with powers of 2, and coordinates whose
+    /// velocities are only rounding errors with 0.
     fn weights(&self) -> Vec<Expr<'g>> {
         const SMALL: f64 = 1e-3;
         let (b, k) = (self.b(), self.operators());

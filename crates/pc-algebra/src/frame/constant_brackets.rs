@@ -15,8 +15,8 @@ use crate::identity::sample::Neighbourhood;
 use crate::linear_algebra::inverse::inverse;
 use crate::linear_algebra::matrix::Matrix;
 
-/// If the ratio of the smallest to the largest singular value of some operators is below this, they may be
-/// dependent, as far as numbers show.
+/// If the ratio of the smallest to the largest singular value of several operators is below this, the numbers
+/// suggest that they may be dependent.
 const DEPENDENT: f64 = 1e-9;
 /// The size, relative to a vector, that rounding errors may give to a component that is zero.
 const ROUNDED: f64 = 1e-11;
@@ -83,9 +83,9 @@ impl<'g> Frame<'g> {
         symbols
     }
 
-    /// The coefficients a with Y = Σ a_s X_s for each Y of the `targets`, if there are any; the X_s are the
-    /// first operators, which are independent. They are sought as fractions, as expressions in parameters
-    /// and time, and as rounded numbers; each result is verified.
+    /// The coefficients a with Y = Σ a_s X_s for each Y of the `targets`, if such coefficients exist; the X_s
+    /// are the first operators, which are independent. The coefficients are sought as fractions, as
+    /// expressions in parameters and time, and as rounded numbers; each result is verified.
     fn combinations(
         &self,
         operators: &[Vec<Expr<'g>>],
@@ -160,8 +160,7 @@ impl<'g> Frame<'g> {
         None
     }
 
-    /// The solutions a of Σ a_s X_s = Y, k equations with the same left-hand sides, one for each of the
-    /// right-hand sides.
+    /// The solutions a of the k equations Σ a_s X_s = Y, one solution for each of the right-hand sides.
     fn solution<'h>(
         &self,
         equations: &[Vec<Expr<'h>>],
@@ -247,8 +246,8 @@ impl<'g> Frame<'g> {
         (smallest <= DEPENDENT * largest).then(|| present.into_iter().map(term).collect())
     }
 
-    /// The columns at points near the centre, stacked, each coordinate in units in which the largest entry is 1; parameters
-    /// and time have their values at the centre.
+    /// The columns at several points near the centre, one below the other, with each coordinate in units in which its
+    /// largest entry is 1; parameters and time have their values at the centre.
     fn stacked(&self, columns: &[Vec<Expr<'g>>], near: &Neighbourhood<'g>) -> DMatrix<f64> {
         let (graph, n) = (self.graph(), self.coordinates().len());
         let centre =
@@ -277,7 +276,7 @@ fn vanishing(a: &[Expr<'_>], last: usize) -> Vec<(usize, String)> {
 }
 
 /// The value of a coordinate at a point: at the first points each coordinate in turn is 1 and the others are 0;
-/// after that all are small pseudo-random numbers.
+/// at later points all are small pseudo-random numbers.
 fn simple(place: usize, salt: usize, point: usize, coordinates: usize) -> Number {
     if point < coordinates {
         return Number::integer(i32::from(point == place));

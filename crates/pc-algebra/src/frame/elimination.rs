@@ -27,7 +27,7 @@ pub struct Elimination<'g> {
 
 impl<'g> Frame<'g> {
     /// The frame after elimination of the operators `dependent`, numbered from 0, by η_D = A_DI η_I + A_D0. I
-    /// are the others in order, `matrix` is A_DI and `drift` is A_D0.
+    /// are the other operators in order, `matrix` is A_DI, and `drift` is A_D0.
     ///
     /// # Errors
     /// [`AlgebraError::Shape`]
@@ -122,7 +122,7 @@ impl<'g> Elimination<'g> {
         })
     }
 
-    /// The terms of Y^D − A_DI Y^I, for a field Y given by the terms of its components.
+    /// The terms of Y^D − A_DI Y^I, for a vector field Y given by the terms of its components.
     fn outside(&self, field: &[Vec<Expr<'g>>]) -> Vec<Vec<Expr<'g>>> {
         let row = |(d, &m): (usize, &usize)| -> Vec<Expr<'g>> {
             let carried = self.matrix.nonzero(d).map(|(i, a)| (self.free[i], a));

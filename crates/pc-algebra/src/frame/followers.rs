@@ -13,9 +13,9 @@ const POINTS: usize = 2;
 const SAME: f64 = 1e-9;
 
 impl<'g> Frame<'g> {
-    /// Whether coordinate i follows another: its row of b is zero, or f times that of a coordinate j that
-    /// does not follow, with an f that is defined wherever row i is. So ẋ_i contains no more information
-    /// about η than ẋ_j does.
+    /// Whether coordinate i follows another: its row of b is zero, or is f times the row of a coordinate j
+    /// that does not follow any other, with an f that is defined wherever row i is. So ẋ_i contains no more
+    /// information about η than ẋ_j does.
     ///
     /// On the circle, x' = −y ω and y' = x ω, neither follows the other: −y/x has no value at x = 0.
     pub(crate) fn followers(&self) -> Vec<bool> {

@@ -1,4 +1,4 @@
-//! Frames of operators: ẋ = b η + b_0 (3), X_s = b_is ∂/∂x_i (4).
+//! Frames of operators X_s = b_is ∂/∂x_i (4), with ẋ = b η + b_0 (3).
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -12,8 +12,8 @@ use crate::linear_algebra::matrix::Matrix;
 
 /// A frame of k operators on a space of n coordinates and time.
 ///
-/// X_0 f = ∂f/∂t + b_i0 ∂f/∂x_i and X_s f = b_is ∂f/∂x_i for s = 1..k; b is n × k, b_0 has length n, both may
-/// depend on t and x.
+/// X_0 f = ∂f/∂t + b_i0 ∂f/∂x_i and X_s f = b_is ∂f/∂x_i for s = 1..k; b is n × k, b_0 has length n, and both
+/// may depend on t and x.
 #[derive(Clone, Debug)]
 pub struct Frame<'g> {
     graph: &'g Graph,
@@ -21,7 +21,7 @@ pub struct Frame<'g> {
     coordinates: Vec<Expr<'g>>,
     b: Matrix<Expr<'g>>,
     b0: Vec<Expr<'g>>,
-    /// The matrix a, if b is defined as a⁻¹.
+    /// The matrix a, if b was defined as a⁻¹.
     a: Option<Matrix<Expr<'g>>>,
 }
 
@@ -218,7 +218,7 @@ impl<'g> Frame<'g> {
         self.coupled_pairs().into_iter().all(|(r, s)| self.commutator(r, s).iter().all(|c| c.is_zero()))
     }
 
-    /// Which operators change which coordinates.
+    /// The coordinates that each operator changes.
     pub(crate) fn movers(&self) -> Movers<'g> {
         let mut by_name: HashMap<Option<String>, Vec<usize>> = HashMap::new();
         by_name.entry(self.time.symbol_name()).or_default().push(0);
@@ -235,7 +235,7 @@ impl<'g> Frame<'g> {
         std::iter::once(drift).chain(self.b.transpose().nonzero_rows()).collect()
     }
 
-    /// The components b_is of X_s, the drift for s = 0.
+    /// The components b_is of X_s; for s = 0, the drift.
     pub(crate) fn operator(&self, s: usize) -> Vec<Expr<'g>> {
         if s == 0 { self.b0.clone() } else { self.b.column(s - 1).collect() }
     }
@@ -283,8 +283,8 @@ impl<'g> Frame<'g> {
         }
     }
 
-    /// Rank of b at almost all points, as decided by the graph; it is less if numerical values show that the
-    /// operators are dependent.
+    /// Rank of b at almost all points, as decided by the graph; the rank is lower if numerical values show
+    /// that the operators are dependent.
     pub fn rank(&self) -> usize {
         let known = self.graph.generic_rank_of_entries(self.b.columns(), &self.b.nonzero_rows());
         let near = Neighbourhood::anywhere(self.graph, &self.b.nonzero_entries());
@@ -293,7 +293,7 @@ impl<'g> Frame<'g> {
     }
 }
 
-/// The operators that change each coordinate, and time.
+/// For each coordinate, and for time, the operators that change it.
 pub(crate) struct Movers<'g> {
     graph: &'g Graph,
     by_name: HashMap<Option<String>, Vec<usize>>,

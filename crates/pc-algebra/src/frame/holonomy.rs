@@ -54,7 +54,7 @@ impl<'g> Frame<'g> {
         }
     }
 
-    /// The coordinate π_m with dπ_m = ω^m, if it is found.
+    /// The coordinate π_m with dπ_m = ω^m, if one is found.
     fn quasi_coordinate(&self, m: usize) -> Option<Expr<'g>> {
         let is_rate = |i: &usize| {
             let mut row = self.b().nonzero(*i);

@@ -6,7 +6,7 @@ use pc_expr::{Expr, Weighed};
 use crate::frame::frame::Frame;
 use crate::identity::sample::{Neighbourhood, TRIALS};
 
-/// Whether the velocities that a frame allows, ẋ = b η + b_0 (3), are those of motions on submanifolds.
+/// Whether the velocities ẋ = b η + b_0 (3) that a frame allows are velocities of motions on submanifolds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Integrability {
     /// All [X_r, X_s], r, s = 0..k, are in the span of X_1..X_k at almost every point.
@@ -18,12 +18,12 @@ pub enum Integrability {
         /// rank b.
         dimension: usize,
     },
-    /// The commutator of this pair leaves the span; 0 is time.
+    /// The commutator of this pair of operators lies outside the span; 0 is time.
     NotIntegrable {
         /// The first such pair r < s.
         pair: (usize, usize),
-        /// Its largest distance from the span, relative to the terms of \[X_r, X_s\], with each coordinate
-        /// and each operator in its own units.
+        /// The largest distance of this commutator from the span, relative to the terms of \[X_r, X_s\], with
+        /// each coordinate and each operator in its own units.
         residual: f64,
     },
 }
@@ -33,8 +33,8 @@ impl<'g> Frame<'g> {
     /// only if their commutators are in their span; since \[X_r, X_s\] has no ∂/∂t, this is the span of
     /// X_1..X_k.
     ///
-    /// The rank is that of almost all points, decided as by [`pc_expr::Graph::generic_rank`]; if the graph
-    /// knows too little about the functions involved, a residual at points of `near` decides. Unlike
+    /// The rank is the rank at almost all points, determined as by [`pc_expr::Graph::generic_rank`]; if the
+    /// graph knows too little about the functions involved, a residual at points of `near` decides. Unlike
     /// [`structure_coefficients`](Frame::structure_coefficients), this method accepts frames of any rank.
     ///
     /// To ask whether constraints η_α = 0 are holonomic, [restrict](Frame::restricted) the frame to the other
@@ -73,8 +73,8 @@ impl<'g> Frame<'g> {
         Integrability::Integrable { dimension: rank }
     }
 
-    /// The largest distance of an operator from the span of X_1..X_k, relative to the two terms whose sum
-    /// each of its components is.
+    /// The largest distance of an operator from the span of X_1..X_k, relative to the terms of its
+    /// components, each of which is a sum of two.
     fn distance_from_span(&self, y: &[[Expr<'g>; 2]], near: &Neighbourhood<'g>) -> f64 {
         let (n, k) = (self.b().rows(), self.operators());
         let outputs: Vec<Expr<'g>> = self.b().entries().iter().chain(y.as_flattened()).copied().collect();
@@ -94,8 +94,8 @@ impl<'g> Frame<'g> {
     }
 }
 
-/// The distance of y from the span of the columns of b, relative to the `size` of the terms of y. Columns, y
-/// and then rows are first scaled to size one, which makes the distance independent of units.
+/// The distance of y from the span of the columns of b, relative to the `size` of the terms of y. The columns
+/// and y, then the rows, are first scaled to size one, which makes the distance independent of units.
 fn scaled_distance(mut b: DMatrix<f64>, y: &DVector<f64>, size: &DVector<f64>) -> f64 {
     let largest = size.amax();
     if largest == 0.0 {

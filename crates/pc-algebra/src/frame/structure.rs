@@ -21,7 +21,8 @@ impl<'g> StructureCoefficients<'g> {
     /// 0 to k − 1.
     ///
     /// Nothing is checked: [`Frame::check`](crate::Frame::check) and
-    /// [`Frame::check_jacobi`](crate::Frame::check_jacobi) check whether they are those of a frame.
+    /// [`Frame::check_jacobi`](crate::Frame::check_jacobi) check whether the coefficients are those of a
+    /// frame.
     ///
     /// ```
     /// # use pc_algebra::StructureCoefficients;
@@ -41,8 +42,8 @@ impl<'g> StructureCoefficients<'g> {
         StructureCoefficients::from_nonzero(operators, indices.map(|(r, s, m)| (r, s, m + 1, c(r, s, m))))
     }
 
-    /// The coefficients with the listed c_rs^m, as (r, s, m, c_rs^m) with r ≠ s counted from 0 and m from 1,
-    /// none listed twice; the others are 0.
+    /// The coefficients c_rs^m listed as (r, s, m, c_rs^m), with r ≠ s counted from 0 and m from 1, none
+    /// listed twice; all others are 0.
     pub(crate) fn from_nonzero(
         operators: usize,
         listed: impl IntoIterator<Item = (usize, usize, usize, Expr<'g>)>,
@@ -54,7 +55,7 @@ impl<'g> StructureCoefficients<'g> {
         StructureCoefficients { operators, nonzero }
     }
 
-    /// The coefficients with `c(r, s)` = (c_rs^1, …, c_rs^k) for the `pairs` r < s, counted from 0; other
+    /// The coefficients with `c(r, s)` = (c_rs^1, …, c_rs^k) for the `pairs` r < s, counted from 0; all other
     /// pairs commute.
     pub(crate) fn from_pairs<E>(
         operators: usize,
@@ -80,14 +81,14 @@ impl<'g> StructureCoefficients<'g> {
         StructureCoefficients::from_nonzero(self.operators, moved)
     }
 
-    /// The coefficients c_rs^m with r, s, m ≤ `operators`, or all if there are fewer operators.
+    /// The coefficients c_rs^m with r, s, m ≤ `operators`, or all coefficients if there are fewer operators.
     #[must_use]
     pub fn restricted(&self, operators: usize) -> StructureCoefficients<'g> {
         let kept = self.nonzero.iter().copied().filter(|&(_, s, m, _)| s.max(m) <= operators);
         StructureCoefficients::from_nonzero(operators.min(self.operators), kept)
     }
 
-    /// The coefficients with `f` applied to each; `f` must map 0 to 0.
+    /// The coefficients with `f` applied to each of them; `f` must map 0 to 0.
     #[must_use]
     pub fn map<'n>(&self, mut f: impl FnMut(Expr<'g>) -> Expr<'n>) -> StructureCoefficients<'n> {
         let mapped = self.nonzero.iter().map(|&(r, s, m, c)| (r, s, m, f(c)));
@@ -101,9 +102,9 @@ impl<'g> StructureCoefficients<'g> {
 
     /// The coefficient c_rs^m with r, s in 0..=k and m in 1..=k.
     ///
-    /// It is the Boltzmann–Hamel symbol γ_rs^m = (∂a_mi/∂x_j − ∂a_mj/∂x_i) b_ir b_js. Authors differ in its
-    /// sign and in the order of its indices: the convention here is that of d/dt ∂L/∂η_s + γ_sr^m η_r ∂L/∂η_m
-    /// − ∂L/∂π_s = Q_s.
+    /// The coefficient is the Boltzmann–Hamel symbol γ_rs^m = (∂a_mi/∂x_j − ∂a_mj/∂x_i) b_ir b_js. Authors
+    /// differ in its sign and in the order of its indices: the convention here is that of the equation d/dt
+    /// ∂L/∂η_s + γ_sr^m η_r ∂L/∂η_m − ∂L/∂π_s = Q_s.
     ///
     /// # Panics
     /// If an index is out of range.

@@ -11,8 +11,8 @@ use crate::linear_algebra::matrix::Matrix;
 /// The direct product G × H. Its coordinates are those of G, then those of H, and every
 /// operation acts on each part separately.
 ///
-/// `_2` is appended to names of coordinates of H that also occur in G, several times if
-/// necessary.
+/// `_2` is appended, several times if necessary, to the names of those coordinates of H whose names also
+/// occur in G.
 ///
 /// ```
 /// use pc_algebra::{DirectProduct, LieGroup, PlaneRotations, UnitQuaternions};
@@ -36,7 +36,7 @@ impl<G: LieGroup, H: LieGroup> DirectProduct<G, H> {
         DirectProduct { first, second, coordinates, dim }
     }
 
-    /// `f` of the first part and `h` of the second part of an element, concatenated.
+    /// Applies `f` to the first part of an element and `h` to the second, and concatenates the results.
     fn joined<'a>(
         &self,
         g: &'a [f64],

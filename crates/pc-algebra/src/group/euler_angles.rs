@@ -16,8 +16,9 @@ use crate::linear_algebra::matrix::Matrix;
 ///
 /// Proper Euler angles have k = i (`zxz`: ψ, θ, φ of the heavy top) and frames singular where sin β = 0,
 /// Tait–Bryan angles have three different axes (`zyx`: yaw, pitch, roll) and frames singular where cos β = 0.
-/// `exp`, `compose` and `inverse` give β in \[0, π\] or \[−½π, ½π\], the other angles in \[−π, π\], and any α
-/// at the singularity; the branch of `log` is that of [`RotationMatrices`](crate::RotationMatrices).
+/// `exp`, `compose` and `inverse` give β in \[0, π\] or \[−½π, ½π\] and the other angles in \[−π, π\], with
+/// an arbitrary α at the singularity; the branch of `log` is that of
+/// [`RotationMatrices`](crate::RotationMatrices).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EulerAngles {
     axes: [usize; 3],
@@ -79,7 +80,7 @@ impl EulerAngles {
     }
 
     /// Computes α and β from R, then γ from row j of R_i(−α) R = R_j(β) R_k(γ), which is independent of β: so
-    /// the product is correct for any α if R does not determine α.
+    /// the product of the three rotations is correct for any α if R does not determine α.
     fn angles(&self, r: &Matrix3<f64>) -> Vec<f64> {
         let ([i, j, _], (l, sign)) = (self.axes, self.third());
         let sign = f64::from(sign);
@@ -96,7 +97,7 @@ impl EulerAngles {
         vec![alpha, beta, gamma]
     }
 
-    /// The matrix b of (α̇, β̇, γ̇) = b ω, with ω in body axes.
+    /// The matrix b of (α̇, β̇, γ̇) = b ω, with ω along body axes.
     fn body_rates<'g>(&self, beta: Expr<'g>, gamma: Expr<'g>) -> [[Expr<'g>; 3]; 3] {
         let ([i, j, k], (l, sign)) = (self.axes, self.third());
         let sign = f64::from(sign);
@@ -197,8 +198,8 @@ impl LieGroup for EulerAngles {
         finite(g)
     }
 
-    /// On the right the matrix is found from the inverse rotation R_k(−γ) R_j(−β) R_i(−α), whose body
-    /// velocity is −ω for the spatial velocity ω of R.
+    /// For spatial velocities (right) the matrix is found from the inverse rotation R_k(−γ) R_j(−β) R_i(−α),
+    /// whose body velocity is −ω for the spatial velocity ω of R.
     fn operators<'g>(&self, side: Side, x: &[Expr<'g>]) -> Matrix<Expr<'g>> {
         let [i, j, k] = self.axes;
         let b = match side {

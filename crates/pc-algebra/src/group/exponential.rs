@@ -1,4 +1,4 @@
-//! The derivative of the exponential map, for ad x with the eigenvalue 0 and eigenvalues ±iθ that are at most
+//! The derivative of the exponential map, if ad x has the eigenvalue 0 and eigenvalues ±iθ that are at most
 //! double.
 
 use nalgebra::DMatrix;
@@ -6,8 +6,9 @@ use nalgebra::DMatrix;
 use crate::group::group::Side;
 use crate::group::stumpff::stumpff;
 
-/// The series Σ (±A)^i/(i + 1)!, with minus on the left, for A = `ad` with A(A² + θ²)² = 0. It is computed as
-/// 1 + d_1(±A) + d_2 A² + d_3(±A³) + d_4 A⁴, with the d_i found by interpolation at 0 and, doubly, at ±iθ.
+/// The series Σ (±A)^i/(i + 1)!, with the minus sign for the left side, where A = `ad` and A(A² + θ²)² = 0.
+/// The series is computed as 1 + d_1(±A) + d_2 A² + d_3(±A³) + d_4 A⁴, with the d_i found by interpolation at
+/// 0 and, doubly, at ±iθ.
 pub(crate) fn dexp(side: Side, ad: &DMatrix<f64>, angle: f64) -> DMatrix<f64> {
     let [_, c1, c2, c3, c4, c5] = stumpff(angle);
     polynomial(
@@ -17,8 +18,8 @@ pub(crate) fn dexp(side: Side, ad: &DMatrix<f64>, angle: f64) -> DMatrix<f64> {
     )
 }
 
-/// The inverse of [`dexp`]: the function ζ/(e^ζ − 1) = ½ζ(coth ½ζ − 1) of ζ = ±A, plus on the right and minus
-/// on the left; its only odd term is −½ζ.
+/// The inverse of [`dexp`]: the function ζ/(e^ζ − 1) = ½ζ(coth ½ζ − 1) of ζ = ±A, with plus for the right
+/// side and minus for the left; its only odd term is −½ζ.
 pub(crate) fn dexp_inverse(side: Side, ad: &DMatrix<f64>, angle: f64) -> DMatrix<f64> {
     let [_, c1, c2, c3, c4, c5] = stumpff(angle / 2.0);
     let square = (3.0 * (c2 - c3) * c1 - c3 * (1.0 + c1)) / (8.0 * c1 * c1);

@@ -77,8 +77,8 @@ pub trait LieGroup {
 
     /// The k × k inverse D(x)⁻¹ of [`dexp`](LieGroup::dexp): ẋ = D(x)⁻¹η for g = exp x.
     ///
-    /// It has poles where rotations by 2π and their multiples make D singular; the entries grow without bound
-    /// there.
+    /// The inverse has poles where rotations by 2π and its multiples make D singular; the entries grow
+    /// without bound there.
     fn dexp_inverse(&self, side: Side, x: &[f64]) -> DMatrix<f64>;
 
     /// A distance between two elements, measured by the entries that describe them; 0 only if they are the

@@ -13,7 +13,8 @@ use crate::linear_algebra::matrix::Matrix;
 /// z)(x', y', z') = (x + x', y + y', z + z' + ½(x·y' − y·x')).
 ///
 /// The coordinates are those of the exponential map: exp and log leave the numbers unchanged. ẋ = a, ẏ = b,
-/// ż = c ± ½(x·b − y·a) with velocities (a, b, c), with plus on the left.
+/// ż = c ± ½(x·b − y·a) with velocities (a, b, c); the plus sign is for body velocities (left), the minus
+/// sign for spatial velocities (right).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HeisenbergGroup {
     n: usize,
@@ -71,7 +72,7 @@ impl LieGroup for HeisenbergGroup {
         DMatrix::identity(g.len(), g.len()) + self.ad(g)
     }
 
-    /// The matrix 1 ± ½ ad x, with minus on the left.
+    /// The matrix 1 ± ½ ad x, with the minus sign for the left side.
     fn dexp(&self, side: Side, x: &[f64]) -> DMatrix<f64> {
         exponential::dexp(side, &self.ad(x), 0.0)
     }

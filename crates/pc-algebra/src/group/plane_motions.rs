@@ -13,8 +13,8 @@ use crate::linear_algebra::matrix::Matrix;
 /// The motions of the plane, SE(2). The coordinates (φ, x, y) stand for the motion that turns by φ and then
 /// shifts by (x, y).
 ///
-/// φ̇ = ω; (ẋ, ẏ) = R(φ) v with body velocities (ω, v) (left), (ẋ, ẏ) = v + ω(−y, x) with spatial ones
-/// (right). Angles that differ by 2π represent the same element; `log` has |ω| ≤ π and ω = π for the half
+/// φ̇ = ω; (ẋ, ẏ) = R(φ) v with body velocities (ω, v) (left), (ẋ, ẏ) = v + ω(−y, x) with spatial velocities
+/// (right). Angles that differ by 2π represent the same element; `log` returns |ω| ≤ π, and ω = π for a half
 /// turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlaneMotions;

@@ -10,8 +10,7 @@ use crate::linear_algebra::matrix::Matrix;
 
 /// The rotations of the plane, SO(2): one coordinate, the angle φ, with φ̇ = η on either side.
 ///
-/// Angles that differ by 2π represent the same element; `log` and `compose` give the one in
-/// (−π, π].
+/// Angles that differ by 2π represent the same element; `log` and `compose` give the angle in (−π, π].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlaneRotations;
 

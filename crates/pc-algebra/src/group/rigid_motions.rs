@@ -18,7 +18,7 @@ use crate::linear_algebra::matrix::Matrix;
 /// (q_0..q_3, x, y, z) stand for the motion that turns by q and then shifts by r = (x, y, z).
 ///
 /// Velocities are (ω, v): q̇ = ½ q ω, ṙ = R(q) v in body axes (left); q̇ = ½ ω q, ṙ = v + ω × r in axes in
-/// space (right). `log` has |ω| ≤ 2π. Its v has a pole at q = −1 unless r is along the axis of ω; at q =
+/// space (right). `log` returns |ω| ≤ 2π. Its v has a pole at q = −1 unless r is along the axis of ω; at q =
 /// −1 itself ω is taken along r (along x if r = 0).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RigidMotions;

@@ -5,7 +5,7 @@ use pc_expr::Expr;
 
 use crate::group::stumpff::stumpff;
 
-/// The vector of the first three numbers.
+/// The vector made of the first three numbers.
 pub(crate) fn vector(x: &[f64]) -> Vector3<f64> {
     Vector3::new(x[0], x[1], x[2])
 }
@@ -15,7 +15,7 @@ pub(crate) fn hat(x: &Vector3<f64>) -> Matrix3<f64> {
     x.cross_matrix()
 }
 
-/// The 3 × 3 matrix as one of dynamic size.
+/// The 3 × 3 matrix as a matrix of dynamic size.
 pub(crate) fn dynamic(matrix: &Matrix3<f64>) -> DMatrix<f64> {
     DMatrix::from_fn(3, 3, |i, j| matrix[(i, j)])
 }
@@ -32,8 +32,8 @@ pub(crate) fn quaternion_exp(x: &Vector3<f64>) -> Quaternion<f64> {
     Quaternion::from_parts(half.cos(), x * (stumpff(half)[1] / 2.0))
 }
 
-/// The x with |x| ≤ 2π whose quaternion is q: v·2 atan2(|v|, q_0)/|v|. For q = −1 it has the direction of
-/// `otherwise`.
+/// The x with |x| ≤ 2π whose quaternion is q: v·2 atan2(|v|, q_0)/|v|. For q = −1 the vector x has the
+/// direction of `otherwise`.
 pub(crate) fn quaternion_log(q: &Quaternion<f64>, otherwise: &Vector3<f64>) -> Vector3<f64> {
     let v = q.vector().into_owned();
     let size = v.norm();
@@ -78,7 +78,7 @@ pub(crate) fn matrix_of(q: &Quaternion<f64>) -> Matrix3<f64> {
     Matrix3::identity() * (s * s - v.norm_squared()) + v * v.transpose() * 2.0 + hat(&v) * (2.0 * s)
 }
 
-/// The quaternion of the first four numbers, scalar first.
+/// The quaternion made of the first four numbers, scalar first.
 pub(crate) fn quaternion(g: &[f64]) -> Quaternion<f64> {
     Quaternion::new(g[0], g[1], g[2], g[3])
 }

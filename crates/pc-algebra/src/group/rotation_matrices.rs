@@ -12,10 +12,10 @@ use crate::linear_algebra::matrix::Matrix;
 
 /// The rotations of space, SO(3), described by the nine entries of R, row by row: R takes components along
 /// body axes to components along axes in space. Ṙ = R ω̂ with body velocities ω (left), Ṙ = ω̂ R with spatial
-/// ones (right), where ω̂ x = ω × x.
+/// velocities (right), where ω̂ x = ω × x.
 ///
-/// `log` has |x| ≤ π. At π, where x and −x give the same R, it is the one whose first nonzero component is
-/// positive. It is computed from the quaternion, and is accurate there too.
+/// `log` returns |x| ≤ π. At |x| = π, where x and −x give the same R, it returns the one whose first nonzero
+/// component is positive. The vector is computed from the quaternion, and so is accurate at π too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RotationMatrices;
 
@@ -73,7 +73,7 @@ impl LieGroup for RotationMatrices {
         dynamic(&matrix(g))
     }
 
-    /// The matrix 1 ± ((1 − cos θ)/θ²) x̂ + ((θ − sin θ)/θ³) x̂², with minus on the left.
+    /// The matrix 1 ± ((1 − cos θ)/θ²) x̂ + ((θ − sin θ)/θ³) x̂², with the minus sign for the left side.
     fn dexp(&self, side: Side, x: &[f64]) -> DMatrix<f64> {
         exponential::dexp(side, &dynamic(&hat(&vector(x))), vector(x).norm())
     }
@@ -87,7 +87,8 @@ impl LieGroup for RotationMatrices {
     }
 
     /// The matrix U diag(1, 1, ±1) Vᵀ with determinant 1, for R = U Σ Vᵀ: the nearest rotation in the sum of
-    /// squares of entries (not unique where the two smallest singular values and the sign make it so).
+    /// squares of entries (it is not unique where the two smallest singular values are equal and the
+    /// determinant of R is not positive).
     fn project(&self, g: &[f64]) -> Result<Vec<f64>, AlgebraError> {
         let r = matrix(&finite(g)?);
         let no_nearest = || AlgebraError::NoNearestElement { element: g.to_vec() };

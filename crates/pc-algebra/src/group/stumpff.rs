@@ -50,8 +50,8 @@ mod tests {
         sum.to_f64().unwrap()
     }
 
-    /// 16 rounding errors: at the angle 2, (1/6 − c_3)/θ² magnifies the four or so rounding errors of its
-    /// terms by a factor of six.
+    /// The bound is 16 rounding errors: at the angle 2, (1/6 − c_3)/θ² magnifies the four or so rounding
+    /// errors of its terms by a factor of six.
     const RELATIVE: f64 = 16.0 * f64::EPSILON;
 
     #[test]

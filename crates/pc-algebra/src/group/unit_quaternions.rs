@@ -16,9 +16,9 @@ use crate::linear_algebra::matrix::Matrix;
 /// two elements that represent the same rotation x ↦ q x q* from body axes to axes in space.
 ///
 /// The basis of the algebra is ½i, ½j, ½k, so that q̇ = ½ q ω with body angular velocity ω (left) and q̇ = ½
-/// ω q with the spatial one (right). `log` is the rotation vector with |x| ≤ 2π, (2π, 0, 0) for q = −1; if
-/// q_0 < 0, the shorter rotation is that of −q. Off the unit sphere the frames are homogeneous in q and |q|
-/// is constant along their motions.
+/// ω q with the spatial angular velocity (right). `log` is the rotation vector with |x| ≤ 2π, (2π, 0, 0) for
+/// q = −1; if q_0 < 0, the shorter rotation is that of −q. Off the unit sphere the frames are homogeneous in
+/// q and |q| is constant along their motions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnitQuaternions;
 
@@ -113,7 +113,7 @@ pub(crate) fn unit(g: &[f64]) -> Result<[f64; 4], AlgebraError> {
     Ok(scaled.map(|x| x / norm))
 }
 
-/// The matrix with the columns ½ q e_s on the left and ½ e_s q on the right, where e_s = i, j, k.
+/// The matrix with the columns ½ q e_s for the left side and ½ e_s q for the right, where e_s = i, j, k.
 pub(crate) fn quaternion_operators<'g>(side: Side, q: &[Expr<'g>]) -> Matrix<Expr<'g>> {
     let sign = if side == Side::Left { 1.0 } else { -1.0 };
     Matrix::from_fn(4, 3, |i, s| {

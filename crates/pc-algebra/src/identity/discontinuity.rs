@@ -14,7 +14,7 @@ const MOST_STEPS: usize = 60;
 const ARRIVED: f64 = 1e-12;
 /// The distances from a surface at which values are compared, relative to the size of the point.
 const BESIDE: [f64; 3] = [1e-5, 1e-6, 1e-7];
-/// A jump is at least this fraction of the values, and the same at all distances to within a tenth.
+/// A jump is at least this fraction of the values, and is the same at all distances to within a tenth.
 const LEAST: f64 = 1e-8;
 const SAME: f64 = 0.1;
 
@@ -27,8 +27,8 @@ pub struct Discontinuity<'g> {
     pub function: usize,
 }
 
-/// The [seams](Graph::seams) on which functions jump as the `moving` symbols change; the symbols of `numbers` have these
-/// values, all other symbols may have any value.
+/// The [seams](Graph::seams) on which functions jump as the `moving` symbols change; the symbols of `numbers` have the
+/// values given there, all other symbols may have any value.
 ///
 /// Newton's steps lead to points on a seam. Lengths are measured with components in units in which the terms of the functions
 /// and of the seam are of the same order. From the difference D(δ) of the values at the distances ±δ, the part proportional to δ
@@ -36,7 +36,7 @@ pub struct Discontinuity<'g> {
 /// corner or a root the rest falls with δ; at a pole it rises.
 ///
 /// # Errors
-/// As [`Program::new`].
+/// As for [`Program::new`].
 ///
 /// ```
 /// # use pc_algebra::discontinuities;
@@ -95,10 +95,10 @@ pub fn discontinuities<'g>(
 }
 
 /// Whether a function may jump as the `changing` symbols change: it contains a sign, a step or an angle that depends on
-/// them, or has [discontinuities]. The symbols of `numbers` have these values.
+/// them, or has [discontinuities]. The symbols of `numbers` have the values given there.
 ///
 /// # Errors
-/// As [`discontinuities`].
+/// As for [`discontinuities`].
 pub fn may_jump<'g>(
     graph: &'g Graph,
     function: Expr<'g>,
@@ -203,7 +203,7 @@ fn shifted(point: &[f64], (places, units): (&[usize], &[f64]), direction: &[f64]
     there
 }
 
-/// The number with its bits mixed (splitmix64).
+/// The given number with its bits mixed (splitmix64).
 fn mixed(number: u64) -> u64 {
     let mut z = number.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -1,12 +1,13 @@
 //! Verdicts on an identity.
 
-/// Whether an identity holds. The graph may prove it, or numbers may disprove it; otherwise it stays open.
+/// Whether an identity holds. The graph may prove the identity, or numbers may disprove it; otherwise it
+/// stays open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Identity {
-    /// The graph folds it to zero.
+    /// The graph folds the expression to zero.
     Proved,
-    /// The graph does not fold it, but the numerical residual is small enough to be rounding error, or there
-    /// are no numerical values (∞).
+    /// The graph does not fold the expression, but the numerical residual is small enough to be rounding
+    /// error, or there are no numerical values (∞).
     Open {
         /// The residual, as a fraction of the size of the terms.
         rest: f64,

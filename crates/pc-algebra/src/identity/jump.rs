@@ -4,7 +4,7 @@ use pc_expr::{Break, Expr, Graph, Weighed};
 
 use crate::identity::sample::{Neighbourhood, TRIALS};
 
-/// The maximum number of Newton's steps to a surface: a surface that is not reached by then is ignored.
+/// The maximum number of Newton's steps to a surface: a surface that they do not reach is ignored.
 const MOST_STEPS: usize = 40;
 /// The iteration has converged when a step is this small relative to the point.
 const ARRIVED: f64 = 1e-14;
@@ -14,7 +14,7 @@ const BESIDE: f64 = 1e-6;
 /// A jump of an expression.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Jump {
-    /// Names and values of a point at which it jumps.
+    /// Names and values of the symbols at a point where the expression jumps.
     pub at: Vec<(String, f64)>,
     /// The size of the jump.
     pub size: f64,
@@ -23,8 +23,9 @@ pub struct Jump {
 impl<'g> Neighbourhood<'g> {
     /// A jump of `value` at a surface that is crossed when the `moving` symbols change, if there is one nearby.
     ///
-    /// The surface is f = 0 of a `step` or `sign`; from points near the centre Newton's steps along ∇f lead to it. A difference
-    /// no larger than rounding errors is not a jump, and neither is one at a surface that f only touches.
+    /// The surface is f = 0 of a `step` or `sign`; from points near the centre Newton's steps along ∇f lead to it. A
+    /// difference no larger than rounding errors is not a jump, and neither is a difference at a surface where f only
+    /// touches zero.
     ///
     /// ```
     /// # use pc_algebra::Neighbourhood;

@@ -6,8 +6,8 @@
 
 use pc_expr::{Backend, Evaluator, Expr, Graph, Inputs, Program};
 
-/// Terms that differ by up to this many powers of ten are of the same order: neither is negligible beside the
-/// other.
+/// Two terms that differ by up to this many powers of ten are of the same order: neither is negligible beside
+/// the other.
 const ORDERS: f64 = 2.0;
 /// The powers of ten by which a symbol is multiplied in a trial.
 const STEPS: [f64; 12] = [1e1, 1e-1, 1e2, 1e-2, 1e3, 1e-3, 1e6, 1e-6, 1e9, 1e-9, 1e12, 1e-12];
@@ -16,7 +16,7 @@ const WITHOUT_VALUES: f64 = 1e6;
 
 /// Values of the `symbols` at which the terms of the expressions are of the same order: the given values multiplied by
 /// powers of ten; `None` if the given values are already suitable, or if no others are better. The symbols of
-/// `numbers` keep their values, all others are 1.
+/// `numbers` keep their values; all other symbols are 1.
 pub(crate) fn magnitudes<'g>(
     graph: &'g Graph,
     expressions: &[Expr<'g>],
@@ -53,7 +53,7 @@ struct Terms {
     values: Evaluator,
     /// The numerical factors of the terms, group by group.
     factors: Vec<Vec<f64>>,
-    /// The values of the symbols that do not change, which come after those that do.
+    /// The values of the symbols that do not change; these symbols come after those that change.
     fixed: Vec<f64>,
 }
 

@@ -89,8 +89,8 @@ impl<'g> Neighbourhood<'g> {
 
     /// The largest |f|/Σ|terms| of sums f of `terms` at the centre and points near it where all are finite: about
     /// 10⁻¹⁶ where f vanishes identically but the graph does not fold it to 0, and never more than 1; infinity if
-    /// there are no such points. It is 0 only if the graph folds f to 0. Σ|terms| includes terms that have
-    /// cancelled inside a term.
+    /// there are no such points. The result is 0 only if the graph folds f to 0. Σ|terms| includes terms that
+    /// have cancelled inside a term.
     ///
     /// The result does not depend on units: 10⁻¹⁰ x is not zero.
     ///
@@ -132,7 +132,8 @@ impl<'g> Neighbourhood<'g> {
         }
     }
 
-    /// A neighbourhood in which the expressions have values, if one is found without values for their symbols.
+    /// A neighbourhood in which the expressions have values, if one can be found without given values for
+    /// their symbols.
     pub fn anywhere(graph: &'g Graph, expressions: &[Expr<'g>]) -> Neighbourhood<'g> {
         let symbols = graph.symbols_of(expressions);
         let about =
@@ -149,8 +150,8 @@ impl<'g> Neighbourhood<'g> {
         known.or_else(|| usual().find(has(Weighed::is_finite))).unwrap_or_default()
     }
 
-    /// Whether an expression is zero, or no more than a rounding error wherever it has values nearby, even
-    /// though the graph does not fold it to zero.
+    /// Whether an expression is zero, or at least no more than a rounding error wherever it has values
+    /// nearby, even if the graph does not fold it to zero.
     pub fn vanishes(&self, graph: &'g Graph, expression: Expr<'g>) -> bool {
         if expression.constant().is_some() {
             return expression.is_zero();
@@ -207,7 +208,8 @@ impl<'g> Neighbourhood<'g> {
         found
     }
 
-    /// The values of the outputs at up to `count` points near the centre at which all are such numbers.
+    /// The values of the outputs at up to `count` points near the centre at which all outputs have the
+    /// required kind of value.
     fn beside(
         &self,
         graph: &'g Graph,
@@ -219,7 +221,8 @@ impl<'g> Neighbourhood<'g> {
         values.filter(|values| values.iter().all(|&x| is(x))).take(count).collect()
     }
 
-    /// The values of the outputs at the [points of one order](Self::points_of_one_order).
+    /// The values of the outputs at the points at which [terms are of the same
+    /// order](Self::points_of_one_order).
     fn of_one_order(&self, graph: &'g Graph, outputs: &[Expr<'g>], count: usize) -> Vec<Vec<Weighed>> {
         let value = |point: Vec<(Expr<'g>, f64)>| {
             let point: Vec<_> = point.into_iter().map(|(x, value)| (x, Weighed::from_f64(value))).collect();

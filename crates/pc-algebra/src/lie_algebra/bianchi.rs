@@ -22,7 +22,7 @@ impl LieAlgebra {
     }
 
     /// Bianchi's type VII_h, h ≥ 0: \[X_1, X_2\] = −aX_2 + X_3, \[X_2, X_3\] = 0, \[X_3, X_1\] = X_2 + aX_3
-    /// with a = √h; h = 0 is se(2). a is rounded as in [`bianchi6`](LieAlgebra::bianchi6).
+    /// with a = √h; h = 0 is se(2). The constant a is rounded as in [`bianchi6`](LieAlgebra::bianchi6).
     ///
     /// # Errors
     /// [`AlgebraError::BianchiParameter`] for h < 0 or NaN.

@@ -9,9 +9,9 @@ use crate::lie_algebra::lie_algebra::LieAlgebra;
 
 /// An algebra of the catalogue.
 pub struct Entry {
-    /// Its name for [`LieAlgebra::named`].
+    /// The name under which [`LieAlgebra::named`] finds it.
     pub name: &'static str,
-    /// Its description, with the order and signs of its basis.
+    /// A description, with the order and signs of the basis.
     pub description: &'static str,
     make: fn() -> LieAlgebra,
 }
@@ -20,8 +20,8 @@ const fn entry(name: &'static str, description: &'static str, make: fn() -> LieA
     Entry { name, description, make }
 }
 
-/// The algebras that have a name without a size or a parameter in it. If two algebras have equal constants,
-/// the more common name comes first. Commutative algebras are not listed: they need no name.
+/// The algebras whose names contain neither a size nor a parameter. If two algebras have equal constants, the
+/// more common name comes first. Commutative algebras are not listed: they need no name.
 pub const CATALOGUE: &[Entry] = &[
     entry(
         "so3",

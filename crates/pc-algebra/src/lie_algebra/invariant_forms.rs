@@ -14,8 +14,8 @@ impl LieAlgebra {
     /// A basis of the linear forms ξ with ξ([x, y]) = 0: the solutions of c_rs^m ξ_m = 0, the annihilator of
     /// \[g, g\].
     ///
-    /// They are the characters of the algebra, not Casimir functions of the momenta. Entries are coprime
-    /// integers.
+    /// These forms are the characters of the algebra, not Casimir functions of the momenta. Entries are
+    /// coprime integers.
     ///
     /// # Errors
     /// [`AlgebraError::NotRational`].
@@ -32,8 +32,8 @@ impl LieAlgebra {
     /// A basis of the symmetric bilinear forms B with B([x, y], z) + B(y, [x, z]) = 0: the solutions of
     /// c_rs^p B_pm + c_rm^p B_sp = 0, as k × k matrices with coprime integer entries.
     ///
-    /// The Killing form is one of them; if one of them is regular, coadjoint motion is equivalent to adjoint
-    /// motion.
+    /// The Killing form is one of these forms; if any of the forms is regular, coadjoint motion is equivalent
+    /// to adjoint motion.
     ///
     /// # Errors
     /// [`AlgebraError::NotRational`].

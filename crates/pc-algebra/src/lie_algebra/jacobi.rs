@@ -6,7 +6,7 @@ use pc_expr::{Number, Scalar, Weighed};
 
 use crate::error::AlgebraError;
 
-/// The triple r < s < u of which (a, b, c) is a cyclic permutation, if it is one.
+/// The triple r < s < u of which (a, b, c) is a cyclic permutation, if there is one.
 pub(crate) fn cyclic(a: usize, b: usize, c: usize) -> Option<(usize, usize, usize)> {
     let rotated = [(a, b, c), (b, c, a), (c, a, b)];
     rotated.into_iter().find(|&(r, s, u)| r < s && s < u)
@@ -49,7 +49,7 @@ mod tests {
 
     use super::*;
 
-    /// Checks the identity as it is written, with all k³ coefficients.
+    /// Checks the identity in its written form, with all k³ coefficients.
     fn written_out(
         k: usize,
         c: impl Fn(usize, usize, usize) -> i64,

@@ -35,8 +35,8 @@ impl LieAlgebra {
         LieAlgebra { dim, nonzero: all.filter(|(_, c)| !c.is_zero()).collect() }
     }
 
-    /// The algebra with the c_rs^m listed as (r, s, m, c_rs^m), r < s, which are known to satisfy Jacobi's
-    /// identity; indices are counted from 0.
+    /// The algebra with the c_rs^m listed as (r, s, m, c_rs^m), r < s; they are known to satisfy Jacobi's
+    /// identity, and indices are counted from 0.
     pub(crate) fn from_upper(
         dim: usize,
         upper: impl Iterator<Item = (usize, usize, usize, Number)>,
@@ -46,10 +46,11 @@ impl LieAlgebra {
     }
 
     /// The algebra whose brackets [X_r, X_s] = Σ value·X_m are listed as (r, s, m, value), with indices
-    /// counted from 0; those of the pairs (s, r) follow, and pairs that are not listed commute.
+    /// counted from 0; the brackets of the pairs (s, r) follow from these, and pairs that are not listed
+    /// commute.
     ///
     /// # Errors
-    /// As [`new`](LieAlgebra::new); a list that contradicts itself is not antisymmetric.
+    /// As for [`new`](LieAlgebra::new); a list that contradicts itself is not antisymmetric.
     pub fn from_brackets(
         dim: usize,
         brackets: &[(usize, usize, usize, Number)],

@@ -13,11 +13,11 @@ impl LieAlgebra {
     /// The rank: the dimension of the Cartan subalgebras, which is the multiplicity of the eigenvalue 0 of ad
     /// x for almost all x.
     ///
-    /// That multiplicity is k − rank (ad x)^p for any p ≥ k. It is computed modulo the prime 2⁶¹ − 1 at two
-    /// fixed pseudo-random points x, without rounding. At a special point or modulo a prime the rank of a
-    /// matrix can only be lower, so the result is never too small. By Schwartz and Zippel it is too large
-    /// with a probability below 2k²/2⁶¹ at each point, unless the prime divides all coefficients of a minor
-    /// of (ad x)^p.
+    /// That multiplicity is k − rank (ad x)^p for any p ≥ k. The multiplicity is computed modulo the prime
+    /// 2⁶¹ − 1 at two fixed pseudo-random points x, without rounding. At a special point or modulo a prime
+    /// the rank of a matrix can only be lower, so the result is never too small. By the lemma of Schwartz and
+    /// Zippel, the result is too large with a probability below 2k²/2⁶¹ at each point, unless the prime
+    /// divides all coefficients of a minor of (ad x)^p.
     ///
     /// # Errors
     /// [`AlgebraError::NotRational`].
@@ -46,7 +46,8 @@ impl LieAlgebra {
     /// codimension of the largest coadjoint orbits and so the number of independent Casimir functions near
     /// such a ξ (J. Dixmier, *Enveloping Algebras*).
     ///
-    /// It is computed like [`rank`](LieAlgebra::rank), with k/2⁶¹ in place of 2k²/2⁶¹.
+    /// The index is computed like the [`rank`](LieAlgebra::rank), with the probability k/2⁶¹ in place of
+    /// 2k²/2⁶¹.
     ///
     /// # Errors
     /// [`AlgebraError::NotRational`].

@@ -48,7 +48,7 @@ pub(crate) fn primitive(vector: &[BigRational]) -> Vec<BigRational> {
     vector.iter().map(|x| x / &scale).collect()
 }
 
-/// The greatest rational number of which both are integer multiples, by Euclid's algorithm.
+/// The greatest rational number of which both numbers are integer multiples, found by Euclid's algorithm.
 fn common_divisor(a: &BigRational, b: &BigRational) -> BigRational {
     let (mut a, mut b) = (a.abs(), b.abs());
     while !b.is_zero() {

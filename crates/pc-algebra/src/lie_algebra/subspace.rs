@@ -18,8 +18,8 @@ impl Subspace {
     /// The span of vectors of length `ambient`.
     ///
     /// # Errors
-    /// [`AlgebraError::Shape`] for a vector of another length, [`AlgebraError::IrrationalEntry`] for an entry
-    /// that is not rational (the vectors count as rows).
+    /// [`AlgebraError::Shape`] for a vector of a different length, [`AlgebraError::IrrationalEntry`] for an
+    /// entry that is not rational (the vectors count as rows).
     ///
     /// ```
     /// # use pc_algebra::Subspace;
@@ -75,7 +75,7 @@ impl Subspace {
     /// Whether `vector`, of length [`ambient`](Subspace::ambient), lies in the subspace.
     ///
     /// # Errors
-    /// As [`span`](Subspace::span).
+    /// As for [`span`](Subspace::span).
     pub fn contains(&self, vector: &[Number]) -> Result<bool, AlgebraError> {
         Ok(self.has(&exact_vector(self.ambient(), 0, vector)?))
     }

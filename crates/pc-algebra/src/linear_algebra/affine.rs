@@ -82,8 +82,8 @@ fn at_zero<'g>(
     defined.then_some((parts, value))
 }
 
-/// Whether derivatives determine the value, up to rounding errors: true for functions without corners,
-/// jumps and poles, beyond which a function might continue differently.
+/// Whether derivatives determine the value, up to rounding errors: true for functions without corners, jumps
+/// and poles, since a function might continue differently beyond these.
 fn smooth<'g>(graph: &'g Graph, value: Expr<'g>, symbols: &[Expr<'g>]) -> bool {
     !graph.applies(value, symbols, |function| !function.is_smooth()) && !graph.divides_by(value, symbols)
 }
@@ -94,7 +94,8 @@ fn depend<'g>(graph: &'g Graph, values: &[Expr<'g>], symbols: &[Expr<'g>]) -> bo
     values.iter().any(|value| written.iter().any(|&symbol| value.depends_on(symbol)))
 }
 
-/// Whether the value of an expression is zero, even in a graph that merges expressions by structure only.
+/// Whether the value of an expression is zero, even in a graph that merges only expressions of the same
+/// structure.
 fn vanishes<'g>(graph: &'g Graph, x: Expr<'g>) -> bool {
     if x.is_zero() || graph.folding() == Folding::ByValue {
         return x.is_zero();
@@ -109,7 +110,7 @@ fn vanishes<'g>(graph: &'g Graph, x: Expr<'g>) -> bool {
 mod tests {
     use super::*;
 
-    /// Their slopes are constant wherever they exist.
+    /// The slopes of these functions are constant wherever they exist.
     #[test]
     fn piecewise_affine_functions_are_not_affine() {
         let graph = Graph::new();
@@ -147,7 +148,7 @@ mod tests {
         }
     }
 
-    /// In another order of multiplication the coefficients differ in the last digits.
+    /// If factors are multiplied in another order, the coefficients differ in the last digits.
     #[test]
     fn rounded_coefficients_do_not_hide_a_polynomial() {
         let graph = Graph::new();

@@ -30,7 +30,7 @@ pub(crate) fn block_triangular(entries: &[Vec<usize>]) -> Option<Vec<(Vec<usize>
     Some(components.into_iter().map(block).collect())
 }
 
-/// Finds a column for the row, if necessary by moving other rows to other columns.
+/// Finds a column for the row, if necessary by reassigning other rows to other columns.
 fn is_matched(row: usize, entries: &[Vec<usize>], tried: &mut [bool], row_of: &mut [Option<usize>]) -> bool {
     for &column in &entries[row] {
         if tried[column] {

@@ -44,7 +44,7 @@ impl Echelon {
         true
     }
 
-    /// Subtracts from `row` an element of the span, so that the rest is 0 in every pivot column.
+    /// Subtracts from `row` an element of the span, so that the remainder is 0 in every pivot column.
     pub(crate) fn reduce(&self, row: &mut [BigRational]) {
         for (own, &pivot) in self.rows.iter().zip(&self.pivots) {
             subtract(row, own, pivot);
@@ -75,7 +75,8 @@ impl Echelon {
         &self.pivots
     }
 
-    /// A basis of the vectors whose product with every row is 0: one for each column without a pivot.
+    /// A basis of the space of vectors whose product with every row is 0, with one vector for each column
+    /// without a pivot.
     pub(crate) fn null_space(&self) -> Vec<Vec<BigRational>> {
         (0..self.columns)
             .filter(|free| !self.pivots.contains(free))

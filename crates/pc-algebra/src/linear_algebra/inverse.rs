@@ -8,23 +8,24 @@ use crate::linear_algebra::matrix::Matrix;
 
 /// Blocks up to this size are inverted by cofactors, larger ones by elimination.
 const COFACTORS: usize = 4;
-/// Pivots of at least this fraction of the largest are acceptable: rounding errors grow at most tenfold.
+/// Pivots that are at least this fraction of the largest are acceptable: rounding errors grow at most
+/// tenfold.
 const READILY: f64 = 0.1;
 /// Constants smaller than this fraction of the largest entry in their row are not used as pivots: rounding
 /// errors would grow a thousandfold.
 const TINY: f64 = 1e-3;
-/// A difference of rounded constants that is smaller than this fraction of them, some hundred rounding
-/// errors, counts as zero.
+/// A difference between rounded constants that is smaller than this fraction of the constants, some hundred
+/// rounding errors, counts as zero.
 const ROUNDING: f64 = 1e-13;
 
 /// The inverse of a square matrix; `None` if its determinant is identically zero.
 ///
-/// Its entries are regular wherever the matrix is. Constant pivots that are not small relative to their row
-/// are eliminated first. The remaining matrix is solved block by block, in block triangular form: small
-/// blocks by cofactors over their determinant, larger ones by orthogonalisation. No divisor vanishes at any
-/// state where the matrix is regular. Constants that cancel up to rounding errors count as zero; so does a
-/// divisor that is no more than a rounding error at random points, even if the graph does not fold it to
-/// zero.
+/// The entries of the inverse are regular wherever the matrix is. Constant pivots that are not small relative
+/// to their row are eliminated first. The remaining matrix is solved block by block, in block triangular
+/// form: small blocks by cofactors over their determinant, larger ones by orthogonalisation. No divisor
+/// vanishes at any state where the matrix is regular. Constants that cancel up to rounding errors count as
+/// zero; so does a divisor that is no more than a rounding error at random points, even if the graph does not
+/// fold it to zero.
 ///
 /// Uncoupled rows and columns are inverted separately.
 pub fn inverse<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Matrix<Expr<'g>>> {
@@ -93,7 +94,7 @@ pub fn determinant<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<Ex
     (all.len() <= COFACTORS && matrix.columns() == all.len()).then(|| minor(graph, matrix, &all, &all))
 }
 
-/// Gauss–Jordan elimination of `left | right` with pivots in any order.
+/// Gauss–Jordan elimination of `left | right` with the pivots in any order.
 struct Elimination<'g> {
     graph: &'g Graph,
     left: Matrix<Expr<'g>>,
@@ -307,7 +308,8 @@ mod tests {
         }
     }
 
-    /// Diagonally dominant matrices of any size are regular at every state, even where minors vanish.
+    /// Tests diagonally dominant matrices of several sizes, which are regular at every state, even where
+    /// minors vanish.
     #[test]
     fn the_inverse_is_regular_wherever_the_matrix_is() {
         let graph = Graph::new();

@@ -11,7 +11,7 @@ pub trait MatrixEntry: Copy + PartialEq {
     /// 0
     const ZERO: Self;
     /// Whether a matrix stores only its nonzero entries: the frame and the mass matrix of n independent bodies
-    /// have n² expressions, of which about n are not zero.
+    /// have n² entries, of which about n are not zero.
     const IS_SPARSE: bool;
     /// Whether the entry is left out of a sparse matrix.
     fn is_nothing(&self) -> bool;
@@ -122,7 +122,8 @@ impl<T: MatrixEntry> Matrix<T> {
         (0..self.rows).flat_map(|i| self.nonzero(i)).map(|(_, entry)| entry).collect()
     }
 
-    /// The matrix with its [entries that are not zero](Matrix::nonzero_entries) replaced, each by one of `entries`.
+    /// The matrix with each of its [entries that are not zero](Matrix::nonzero_entries) replaced by the
+    /// corresponding one of `entries`.
     ///
     /// # Panics
     /// If there are fewer `entries` than nonzero entries.
@@ -222,11 +223,11 @@ impl<'g> Matrix<Expr<'g>> {
         Matrix::from_rows(n, (0..n).map(|i| vec![(i, Expr::ONE)]).collect())
     }
 
-    /// The product with another matrix, which must have as many rows as this one has columns; only nonzero
+    /// The product with another matrix, which must have as many rows as this matrix has columns; only nonzero
     /// terms cost operations.
     ///
     /// # Panics
-    /// If it has fewer rows.
+    /// If the other matrix has fewer rows.
     pub fn times(&self, graph: &'g Graph, other: &Matrix<Expr<'g>>) -> Matrix<Expr<'g>> {
         let row = |i: usize| {
             let mut terms: BTreeMap<usize, Vec<Expr<'g>>> = BTreeMap::new();

@@ -7,7 +7,7 @@
 //! a state `bridge` computes the smooth motion to the other side as a `collocation` polynomial, whose nodes avoid
 //! the state. Until the other side is reached, rates are taken from the polynomial. If the smooth motion does not
 //! satisfy the constraints there, no motion passes through that state, and steps continue; if a step has passed over
-//! it, or comes within rounding error of it, the motion is undetermined, which is an error.
+//! the state, or comes within rounding error of it, the motion is undetermined, which is an error.
 
 pub(crate) mod bridge;
 pub(crate) mod collocation;

@@ -16,7 +16,7 @@ const AT_REST: f64 = 1e-9;
 const SLOPE: f64 = 1e-4;
 
 /// A determinant that falls to this fraction of its values at both ends of a step is taken to vanish between
-/// them: a step that resolves the motion contains no such dip otherwise.
+/// the ends: otherwise a step that resolves the motion contains no such dip.
 const VANISHES: f64 = 1e-6;
 
 /// The number of halvings or golden-section steps within a step: they end at about 1e-9 of its length.
@@ -48,9 +48,9 @@ pub(crate) struct Chart {
 /// How a determinant behaves between the ends of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Passage {
-    /// It vanishes, with or without a change of sign.
+    /// The determinant vanishes, with or without a change of sign.
     Zero,
-    /// It becomes infinite, with or without a change of sign.
+    /// The determinant becomes infinite, with or without a change of sign.
     Pole,
 }
 
@@ -67,7 +67,7 @@ impl Chart {
     }
 
     /// The chart of a system all of whose quasi-velocities, in order, are transformed by the matrix A: it
-    /// watches det A a if they are defined in terms of ẋ, and det A otherwise.
+    /// watches det A a if the quasi-velocities are defined in terms of ẋ, and det A otherwise.
     ///
     /// # Errors
     /// [`MechError`] for a symbol without a value.
@@ -87,7 +87,7 @@ impl Chart {
     }
 
     /// The chart that watches a square matrix through which some quasi-velocities determine others; `None` if
-    /// it is constant.
+    /// the matrix is constant.
     pub(crate) fn watching<'g>(
         system: &System<'g>,
         a: &Matrix<Expr<'g>>,
@@ -151,7 +151,7 @@ impl Chart {
         self.last.push(value);
     }
 
-    /// The determinant on the line from one end of a step to the other, at the fraction `s` of it.
+    /// The determinant on the line from one end of a step to the other, at the fraction `s` of the way.
     fn along(&mut self, s: f64, from: (f64, &[f64]), to: (f64, &[f64]), parameters: &[f64]) -> f64 {
         let mut x = std::mem::take(&mut self.between);
         for (x, (a, b)) in x.iter_mut().zip(from.1.iter().zip(to.1)) {
@@ -199,8 +199,8 @@ impl Chart {
         }
     }
 
-    /// Whether a motion with these velocities, after such a passage, is at rest in the undetermined
-    /// direction: it then continues uniquely. False if the columns are not those of ẋ.
+    /// Whether a motion with these velocities, past such a zero or pole, is at rest in the undetermined
+    /// direction: it then continues uniquely. False if the columns of the matrix do not belong to ẋ.
     pub(crate) fn rests(
         &mut self,
         passage: Passage,

@@ -13,15 +13,15 @@ use crate::equations::poincare::Equations;
 use crate::error::MechError;
 use crate::system::signals::Signals;
 
-/// M⁻¹ is written out if the factorisation of M takes no more operations than that of a full matrix of 16
-/// rows. That includes all smaller systems, and larger ones with sparse coupling.
+/// M⁻¹ is written out if the factorisation of M takes no more operations than the factorisation of a full
+/// matrix of 16 rows. That includes all smaller systems, and larger ones with sparse coupling.
 pub(crate) const LONGEST_ELIMINATION: usize = 16 * 15 * 20 / 6;
 
 impl<'g> Equations<'g> {
     /// Compiles the equations, their Jacobian and the observables: integrals, energy, outputs.
     ///
-    /// Accelerations are solved for in the program, unless there are many quasi-velocities, most of them
-    /// coupled with each other: then M is factorised numerically at each call.
+    /// The program itself solves for accelerations, unless there are many quasi-velocities, most of them
+    /// coupled with each other: in that case M is factorised numerically at each call.
     ///
     /// # Errors
     /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) for a symbol that is neither state nor
@@ -35,7 +35,7 @@ impl<'g> Equations<'g> {
     /// [kernel](pc_expr::Backend).
     ///
     /// # Errors
-    /// As [`compile`](Equations::compile).
+    /// As for [`compile`](Equations::compile).
     pub fn compile_for(&self, options: impl Into<CompileOptions>) -> Result<Motion, MechError> {
         let options = options.into();
         let Some(tree) = &self.system.tree else {
@@ -77,7 +77,7 @@ impl FirstOrder<'_> {
         Ok(Motion { switches: switches.map(Box::new), ..motion })
     }
 
-    /// Compiles as above, but without the pieces of piecewise functions.
+    /// Compiles the system, but without the pieces of piecewise functions.
     pub(crate) fn compile_piece(
         &self,
         options: &CompileOptions,

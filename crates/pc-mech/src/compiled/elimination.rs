@@ -1,10 +1,10 @@
 //! Solves M w = r, symbolically or numerically.
 //!
-//! `cost` estimates from the zeros of M which is cheaper. `symbolic` writes M⁻¹ out, using `symbolic_ldl`;
-//! `numeric` factorises at each state, using `dense_ldl`. Under constraints w includes multipliers and the
-//! matrix is that of a `saddle_point`, solved by `solver`; for a tree with loops `schur` solves joint by
-//! joint. `columns` leaves out zeros, `pivots` checks that no pivot vanishes, `prologue` computes once what
-//! depends on parameters alone.
+//! `cost` estimates, from the zeros of M, which of the two is cheaper. `symbolic` writes M⁻¹ out, using
+//! `symbolic_ldl`; `numeric` factorises at each state, using `dense_ldl`. Under constraints, w includes
+//! multipliers and the matrix is that of a `saddle_point` problem, which `solver` solves; for a tree with
+//! loops, `schur` solves joint by joint. `columns` leaves out zeros, `pivots` checks that no pivot vanishes,
+//! `prologue` computes once what depends on parameters alone.
 
 pub(crate) mod columns;
 pub(crate) mod cost;

@@ -15,7 +15,8 @@ pub(crate) enum EvaluationFailure {
     /// The state is too far from satisfying the constraints, whose indices start after this number of
     /// unknowns.
     NoProjection { unknowns: usize },
-    /// A condition that should follow from the other constraints does not hold where they do.
+    /// A condition that should follow from the other constraints does not hold at a state that satisfies
+    /// them.
     Departed { constraint: String },
     /// Newton's method ended with |F| = `residual`.
     NotSolved { residual: f64, iterations: usize },
@@ -28,7 +29,7 @@ pub(crate) enum EvaluationFailure {
 }
 
 impl EvaluationFailure {
-    /// The same failure, with the index of its pivot converted by `place`.
+    /// The same failure, with `place` applied to the index of its pivot.
     pub(crate) fn at_place(self, place: impl Fn(usize) -> usize) -> EvaluationFailure {
         match self {
             EvaluationFailure::Pivot { index, pivot } => {

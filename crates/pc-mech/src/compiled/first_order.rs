@@ -33,9 +33,9 @@ pub(crate) struct FirstOrder<'g> {
     pub(crate) states: usize,
     /// The parameters with their values.
     pub(crate) parameters: Vec<(Expr<'g>, f64)>,
-    /// Parameters that may change at each evaluation: functions of time, and forces computed outside.
+    /// Parameters that may change at each evaluation: functions of time, and external forces.
     pub(crate) varying: Vec<Expr<'g>>,
-    /// The symbols of w, k of them.
+    /// The k symbols of w.
     pub(crate) unknowns: Vec<Expr<'g>>,
     /// The names of the unknowns in messages: the quasi-velocities.
     pub(crate) names: Vec<String>,
@@ -65,7 +65,7 @@ pub(crate) struct FirstOrder<'g> {
 /// The left-hand side of p(t, y, w) = r(t, y), which is not linear in w.
 #[derive(Clone, Debug)]
 pub(crate) struct Implicit<'g> {
-    /// p, k of them.
+    /// The k components of p.
     pub(crate) left: Vec<Expr<'g>>,
     /// The w from which the iteration starts.
     pub(crate) guess: Vec<f64>,
@@ -80,7 +80,7 @@ impl<'g> FirstOrder<'g> {
         }
     }
 
-    /// The number of operations of ẏ when it is written out.
+    /// The number of operations needed to compute ẏ when it is written out.
     fn operations(&self) -> usize {
         let unknowns = self.solve(&self.factors());
         let values: Vec<_> = self.unknowns.iter().copied().zip(unknowns).collect();
@@ -102,7 +102,7 @@ impl<'g> FirstOrder<'g> {
         self.parameters.iter().map(|&(symbol, _)| symbol).collect()
     }
 
-    /// The unknowns w = M⁻¹ r; an unknown that is a single quotient is shortened once more.
+    /// The unknowns w = M⁻¹ r; an unknown that is a single quotient is then simplified once more.
     pub(crate) fn solve(&self, factors: &Factors<'g>) -> Vec<Expr<'g>> {
         if let Some(tree) = &self.tree {
             return tree.system.in_order(&tree.dynamics.accelerations());
@@ -181,13 +181,13 @@ impl<'g> Equations<'g> {
     }
 
     /// Inverse dynamics: the k generalised forces M η̇ − r that have to be added to Q to obtain the
-    /// accelerations η̇, whose [symbols](crate::System::accelerations) they contain. For a large tree they
-    /// are computed body by body, in O(N).
+    /// accelerations η̇, whose [symbols](crate::System::accelerations) they contain. For a large tree the
+    /// forces are computed body by body, in O(N) operations.
     pub fn inverse_dynamics(&self) -> Vec<Expr<'g>> {
         self.written_first_order().balance().into_iter().map(|left| -left).collect()
     }
 
-    /// The first-order system; that of a tree is solved joint by joint if that takes fewer operations.
+    /// The first-order system; for a tree it is solved joint by joint if that takes fewer operations.
     pub(crate) fn shortest_first_order(&self, elimination: TreeElimination) -> FirstOrder<'g> {
         let Some(tree) = self.system.tree.as_ref().filter(|_| elimination != TreeElimination::Whole) else {
             return self.first_order();

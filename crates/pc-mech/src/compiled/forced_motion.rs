@@ -1,4 +1,4 @@
-//! Motions under forces that are computed outside.
+//! Motions under external forces, which the caller computes.
 
 use pc_expr::{Expr, Failure, Pattern, SteepFunctions, TimeDependence, VectorField};
 
@@ -13,8 +13,8 @@ use crate::system::external_force::ExternalForce;
 /// A [`Motion`] under external forces: ẏ = f(t, y, q(t, y)).
 ///
 /// The forces are run-time inputs of the motion, like parameters, and come after them. So the Jacobian is ∂f/∂y +
-/// ∂f/∂q ∂q/∂y, where only ∂q/∂y may be a [difference quotient](ExternalForce::jacobian). It is full: its zero
-/// pattern is not known.
+/// ∂f/∂q ∂q/∂y, where only ∂q/∂y may be a [difference quotient](ExternalForce::jacobian). The Jacobian is full,
+/// since its zero pattern is not known.
 ///
 /// ```
 /// use pc_mech::{Graph, System, VectorField};
@@ -38,7 +38,7 @@ pub struct ForcedMotion<F> {
     force: F,
     /// The quasi-velocities on which the forces act.
     names: Vec<String>,
-    /// The number of parameters; the forces follow them.
+    /// The number of parameters; the forces come after them.
     parameters: usize,
     /// q
     values: Vec<f64>,
@@ -53,7 +53,7 @@ impl Equations<'_> {
     /// Compiles the equations, their Jacobian and the observables, with `force` for the external forces.
     ///
     /// # Errors
-    /// As [`compile`](Equations::compile), and [`ForceError::NoneDeclared`] if no external force was declared.
+    /// As for [`compile`](Equations::compile), and [`ForceError::NoneDeclared`] if no external force was declared.
     pub fn compile_forced<F: ExternalForce>(&self, force: F) -> Result<ForcedMotion<F>, MechError> {
         self.compile_forced_for(CompileOptions::default(), force)
     }
@@ -61,7 +61,7 @@ impl Equations<'_> {
     /// Compiles as [`compile_forced`](Equations::compile_forced) does, with other derivatives or for another kernel.
     ///
     /// # Errors
-    /// As [`compile_forced`](Equations::compile_forced).
+    /// As for [`compile_forced`](Equations::compile_forced).
     pub fn compile_forced_for<F: ExternalForce>(
         &self,
         options: impl Into<CompileOptions>,
@@ -73,10 +73,10 @@ impl Equations<'_> {
 
 impl Canonical<'_> {
     /// Compiles the equations as [`compile_for`](Canonical::compile_for) does, with `force` for the external forces;
-    /// it receives the state (x, y).
+    /// the force receives the state (x, y).
     ///
     /// # Errors
-    /// As [`Equations::compile_forced`].
+    /// As for [`Equations::compile_forced`].
     pub fn compile_forced_for<F: ExternalForce>(
         &self,
         options: impl Into<CompileOptions>,
@@ -90,7 +90,7 @@ impl Multipliers<'_> {
     /// Compiles the equations as [`compile_for`](Multipliers::compile_for) does, with `force` for the external forces.
     ///
     /// # Errors
-    /// As [`Equations::compile_forced`].
+    /// As for [`Equations::compile_forced`].
     pub fn compile_forced_for<F: ExternalForce>(
         &self,
         options: impl Into<CompileOptions>,
@@ -101,16 +101,16 @@ impl Multipliers<'_> {
     }
 }
 
-/// The options, extended by ∂f/∂q if a Jacobian needs it.
+/// The options, with ∂f/∂q added if a Jacobian needs it.
 fn derived(options: CompileOptions) -> CompileOptions {
     options.parameter_jacobian(options.parameter_jacobian || options.jacobian || options.jvp)
 }
 
 impl Motion {
-    /// The motion under the forces that `force` computes. They act on the quasi-velocities called `names`,
-    /// those for which external forces were [declared](crate::SystemBuilder::external_force), in that order. It
-    /// [keeps](Motion::keep) the same integrals. It has a Jacobian if this motion has one, and also [one with
-    /// respect to its parameters](CompileOptions::parameter_jacobian).
+    /// The motion under the forces that `force` computes. The forces act on the quasi-velocities called
+    /// `names`, those for which external forces were [declared](crate::SystemBuilder::external_force), in that
+    /// order. It [keeps](Motion::keep) the same integrals. The new motion has a Jacobian if this one has, and
+    /// also [one with respect to its parameters](CompileOptions::parameter_jacobian).
     ///
     /// # Errors
     /// [`ForceError::NoneDeclared`] without names; [`ShapeError`] for more names than the motion has inputs.
@@ -144,7 +144,7 @@ impl<F: ExternalForce> ForcedMotion<F> {
         motion.forced(external.iter().map(|(name, _)| name.clone()).collect(), force)
     }
 
-    /// The motion as a function of the forces, which follow its parameters.
+    /// The motion as a function of the forces, which come after its parameters.
     pub fn motion(&self) -> &Motion {
         &self.motion
     }
@@ -154,7 +154,7 @@ impl<F: ExternalForce> ForcedMotion<F> {
         &self.force
     }
 
-    /// The external force, to be changed.
+    /// Mutable access to the external force.
     pub fn force_mut(&mut self) -> &mut F {
         &mut self.force
     }
@@ -164,7 +164,7 @@ impl<F: ExternalForce> ForcedMotion<F> {
         &self.motion.parameters()[..self.parameters]
     }
 
-    /// The values of the parameters, to be changed.
+    /// Mutable access to the values of the parameters.
     pub fn parameters_mut(&mut self) -> &mut [f64] {
         &mut self.motion.parameters_mut()[..self.parameters]
     }
@@ -186,8 +186,8 @@ impl<F: ExternalForce> ForcedMotion<F> {
         self.motion.constraint_residuals(t, y)
     }
 
-    /// The observables at (t, y), as [`Motion::observe`] gives them; those that contain a force that cannot be
-    /// computed are not finite.
+    /// The observables at (t, y), as [`Motion::observe`] gives them; observables that contain a force that
+    /// cannot be computed are not finite.
     ///
     /// # Panics
     /// If `y` does not have the length of the state.
@@ -208,8 +208,8 @@ impl<F: ExternalForce> ForcedMotion<F> {
         }
     }
 
-    /// Writes the observables at (t, y) to `values` without computing the forces; those that contain one are
-    /// not finite.
+    /// Writes the observables at (t, y) to `values` without computing the forces; observables that contain a
+    /// force are not finite.
     ///
     /// # Panics
     /// As for [`Motion::observe_to`].
@@ -218,7 +218,7 @@ impl<F: ExternalForce> ForcedMotion<F> {
         self.motion.watch(t, y, values, false);
     }
 
-    /// Writes the residual of each constraint at (t, y), as [`Motion::constraint_residuals_to`] does.
+    /// Writes the residual of each constraint at (t, y), like [`Motion::constraint_residuals_to`].
     ///
     /// # Panics
     /// As there.

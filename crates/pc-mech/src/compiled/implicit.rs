@@ -13,7 +13,7 @@ const MOST_STEPS: usize = 200;
 const HALVINGS: i32 = 60;
 /// A residual this small relative to its terms is accepted as a solution.
 const ENOUGH: f64 = 1e-12;
-/// A residual this small consists of a few rounding errors, which no step can reduce.
+/// A residual this small consists of a few rounding errors, and no step can reduce it.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Solves F = r(t, y) − p(t, y, w) = 0 for w:
@@ -27,8 +27,8 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// So |F| falls, w stays in the domain of p, and p approaches r on a nearly straight line, which keeps w away
 /// from the boundary of the domain until the end.
 ///
-/// Every solution starts from the same guess, so that w depends on (t, y) only, to the last bit; only if that
-/// fails does the iteration start from the last solution.
+/// Every solution starts from the same guess, so that w depends on (t, y) only, to the last bit; only if the
+/// iteration fails does it start again from the last solution.
 #[derive(Clone, Debug)]
 pub(crate) struct Newton {
     /// Computes, from (t, (y, w)), the nonzero entries of the lower triangle of M, then p, then r.
@@ -117,7 +117,7 @@ impl Newton {
         outcome
     }
 
-    /// As [`solve`](Newton::solve), but starts from the w in `known`.
+    /// Like [`solve`](Newton::solve), but starts from the w in `known`.
     fn solve_from(
         &mut self,
         (t, p): At<'_>,
@@ -158,7 +158,7 @@ impl Newton {
         Err(self.failure(MOST_STEPS))
     }
 
-    /// Takes the first λ from ½^`halvings` downwards that sufficiently reduces F, whose norm was `before`.
+    /// Takes the first λ from ½^`halvings` downwards that reduces F sufficiently; the norm of F was `before`.
     /// Returns the number of halvings, if there is such a λ.
     fn search(
         &mut self,

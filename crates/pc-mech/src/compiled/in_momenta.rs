@@ -18,14 +18,15 @@ use crate::error::{EvaluationError, MechError};
 
 impl Multipliers<'_> {
     /// Compiles the canonical equations with multipliers as a vector field of the state (x, y) with the momenta
-    /// y_s = ∂L/∂η_s of all quasi-velocities, called as [`System::momentum_symbols`](crate::System::momentum_symbols):
+    /// y_s = ∂L/∂η_s of all quasi-velocities, named like
+    /// [`System::momentum_symbols`](crate::System::momentum_symbols):
     ///
     ///   ẏ_s = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α,   ẋ = b η + b_0,   C η + c_0 = 0.
     ///
-    /// No velocities are chosen as independent, so a position is singular only where the constraints themselves are.
-    /// States are projected as those of [`compile_for`](Multipliers::compile_for) are, with the same observables and
-    /// [kept](Motion::keep) integrals; integrals to be kept must be those of the equations with these multipliers.
-    /// Products with the Jacobian are not available.
+    /// No velocities are chosen as independent, so a position is singular only where the constraints themselves are
+    /// singular. The projection, the observables and the [kept](Motion::keep) integrals are the same as with
+    /// [`compile_for`](Multipliers::compile_for); integrals to be kept must be integrals of the equations with these
+    /// multipliers. Products with the Jacobian are not available.
     ///
     /// `guess` is the η from which the solution of y = ∂L/∂η starts, where L is not quadratic in η or a
     /// constraint is not affine.
@@ -50,7 +51,7 @@ impl Multipliers<'_> {
     /// ```
     ///
     /// # Errors
-    /// As [`compile_for`](Multipliers::compile_for); [`ShapeError`](crate::ShapeError) for a guess of the wrong
+    /// As for [`compile_for`](Multipliers::compile_for); [`ShapeError`](crate::ShapeError) for a guess of the wrong
     /// length.
     pub fn compile_in_momenta(&self, options: CompileOptions, guess: &[f64]) -> Result<Motion, MechError> {
         let motion = InMomenta::new(self, self.legendre_transform(guess)?, &options)?;
@@ -142,8 +143,8 @@ impl InMomenta {
         &mut self.inner
     }
 
-    /// The time dependence through functions of t alone: the other time dependence of the motion of
-    /// (x, η) refers to other variables.
+    /// The time dependence through functions of t alone; the rest of the time dependence of the motion of (x,
+    /// η) is in terms of other variables.
     pub(crate) fn time_dependence(&self) -> TimeDependence {
         match self.inner.time_dependence() {
             TimeDependence::Known(profile) => TimeDependence::Known(profile).with_unknown(),
@@ -151,7 +152,7 @@ impl InMomenta {
         }
     }
 
-    /// The steep functions of the coordinates, which both motions have in common.
+    /// The steep functions of the coordinates, which are the same for both motions.
     pub(crate) fn steep_functions(&self) -> Option<SteepFunctions> {
         self.inner.steep_functions()?.of_components(self.inner.coordinates)
     }
@@ -164,7 +165,7 @@ impl InMomenta {
     /// Writes the (x, η, z) that corresponds to (x, y, z) to `state`.
     ///
     /// # Errors
-    /// As [`LegendreTransform::to_quasi_velocities`].
+    /// As for [`LegendreTransform::to_quasi_velocities`].
     pub(crate) fn read(&mut self, t: f64, y: &[f64]) -> Result<(), MechError> {
         let parameters = self.transform.parameters_mut();
         let known = parameters.len();
@@ -172,7 +173,7 @@ impl InMomenta {
         self.transform.to_quasi_velocities_in(t, y, &mut self.state)
     }
 
-    /// The (x, η, z) read last.
+    /// The last (x, η, z) that was read.
     pub(crate) fn state(&self) -> &[f64] {
         &self.state
     }
@@ -194,7 +195,7 @@ impl InMomenta {
         }
     }
 
-    /// The range of η, or of their momenta, in a state.
+    /// The range of indices of η, or of the momenta, in a state.
     fn moving(&self) -> Range<usize> {
         let n = self.inner.coordinates();
         n..n + self.quasi_velocities
@@ -286,7 +287,8 @@ impl InMomenta {
         self.inner.jacobian(t, &self.known[..y.len()], &mut self.of_inner)
     }
 
-    /// Computes ∂f/∂p, column by column, as [`jacobian`](InMomenta::jacobian) does ∂f/∂y.
+    /// Computes ∂f/∂p, column by column, in the way in which [`jacobian`](InMomenta::jacobian) computes
+    /// ∂f/∂y.
     pub(crate) fn parameter_jacobian(
         &mut self,
         t: f64,
@@ -300,7 +302,7 @@ impl InMomenta {
         outcome
     }
 
-    /// Computes ∂f/∂t, as [`jacobian`](InMomenta::jacobian) does ∂f/∂y.
+    /// Computes ∂f/∂t, in the way in which [`jacobian`](InMomenta::jacobian) computes ∂f/∂y.
     pub(crate) fn time_derivative(
         &mut self,
         t: f64,

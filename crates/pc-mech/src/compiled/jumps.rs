@@ -7,8 +7,8 @@ use crate::compiled::first_order::FirstOrder;
 
 impl<'g> FirstOrder<'g> {
     /// The [jumps](discontinuities) of r − M w or r − p, and of the rates g, that a motion crosses as its
-    /// state or time changes. A state whose rate is zero changes only at events, which are handled separately,
-    /// and so passes through no jump.
+    /// state or time changes. A state variable whose rate is zero changes only at events, which are handled
+    /// separately, and so does not cross a jump.
     ///
     /// # Errors
     /// [`ExprError::UnboundSymbol`] for a symbol that is neither state nor declared parameter.

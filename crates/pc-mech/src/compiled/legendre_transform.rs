@@ -25,7 +25,7 @@ pub struct LegendreTransform {
     quasi_velocities: QuasiVelocities,
 }
 
-/// How η follows from (x, y).
+/// How η is determined by (x, y).
 #[derive(Clone, Debug)]
 enum QuasiVelocities {
     Closed(Evaluator),
@@ -40,7 +40,7 @@ struct Implicit {
     solver: Solver,
     /// Equations for η alone, whose solution is the starting point.
     nearby: Option<Box<QuasiVelocities>>,
-    /// The starting point if these have no solution.
+    /// The starting point if the equations for η alone have no solution.
     guess: Vec<f64>,
     /// Storage for the starting point, and for the state and w.
     begin: Vec<f64>,
@@ -60,9 +60,9 @@ struct Linear {
 }
 
 impl QuasiVelocities {
-    /// Compiles the numerical solution of these equations, whose first unknowns are η. Nonlinear equations
-    /// start from the solution of those `nearby`, as several velocities may satisfy the constraints, such as ±v
-    /// for v² = 1.
+    /// Compiles the numerical solution of these equations, whose first unknowns are η. For nonlinear equations
+    /// the iteration starts from the solution of the equations `nearby`, since several velocities may satisfy
+    /// the constraints, as ±1 do for v² = 1.
     fn solved(
         equations: &FirstOrder<'_>,
         nearby: Option<&FirstOrder<'_>>,
@@ -146,11 +146,11 @@ impl Linear {
 }
 
 impl LegendreTransform {
-    /// The conversion for `system`, with `momenta` y and ∂L/∂η = `of_velocities`; η are the unknowns of
-    /// `equations`, or, where these are linear, the expressions `closed`.
+    /// The conversion for `system`, with `momenta` y and ∂L/∂η = `of_velocities`; η consists of the unknowns
+    /// of `equations`, or, where the equations are linear, of the expressions `closed`.
     ///
     /// # Errors
-    /// As [`Canonical::legendre_transform`](crate::Canonical::legendre_transform).
+    /// As for [`Canonical::legendre_transform`](crate::Canonical::legendre_transform).
     pub(crate) fn unconstrained<'g>(
         system: &System<'g>,
         momenta: &[Expr<'g>],
@@ -168,12 +168,12 @@ impl LegendreTransform {
         LegendreTransform::new(system, momenta, of_velocities, quasi_velocities)
     }
 
-    /// The conversion for `system`, whose momenta are called `momenta`; η are the first unknowns of
-    /// `equations`, whose variables are (t, x, y). If these are not linear, η is the solution nearest to that
-    /// of the linear equations `nearby`.
+    /// The conversion for `system`, whose momenta are called `momenta`; η consists of the first unknowns of
+    /// `equations`, whose variables are (t, x, y). If the equations are not linear, η is the solution nearest
+    /// to the solution of the linear equations `nearby`.
     ///
     /// # Errors
-    /// As [`Canonical::legendre_transform`](crate::Canonical::legendre_transform).
+    /// As for [`Canonical::legendre_transform`](crate::Canonical::legendre_transform).
     pub(crate) fn solving<'g>(
         system: &System<'g>,
         momenta: &[Expr<'g>],
@@ -219,12 +219,12 @@ impl LegendreTransform {
         }
     }
 
-    /// The values of the parameters, to be changed.
+    /// Mutable access to the values of the parameters.
     pub fn parameters_mut(&mut self) -> &mut [f64] {
         &mut self.parameters
     }
 
-    /// The state (x, y) that corresponds to (x, η), both of length n + k; first-order states follow unchanged.
+    /// The state (x, y) that corresponds to (x, η), both of length n + k; first-order states come last, unchanged.
     ///
     /// # Errors
     /// [`ShapeError`](crate::ShapeError); [`ExprError::NotFinite`](pc_expr::ExprError::NotFinite) outside the domain of
@@ -248,7 +248,7 @@ impl LegendreTransform {
             .map_err(|failure| self.error(failure, t, state))
     }
 
-    /// The state (x, η) that corresponds to (x, y), both of length n + k; first-order states follow unchanged.
+    /// The state (x, η) that corresponds to (x, y), both of length n + k; first-order states come last, unchanged.
     /// Where L is not quadratic, Newton's method finds η from the [guess](crate::Canonical::with_guess).
     ///
     /// # Errors

@@ -8,8 +8,8 @@ use crate::compiled::elimination::pivots::PivotPartition;
 
 /// The machine code of f, for callers that manage memory themselves, and the meaning of its outputs.
 ///
-/// [`entry`](MachineCode::entry) writes ẏ, then those pivots of M, and those numbers with which they are
-/// compared, that change with the state. Its parameters are the
+/// [`entry`](MachineCode::entry) writes ẏ, then the pivots of M and the sizes with which they are compared,
+/// leaving out pivots and sizes that do not change with the state. Its parameters are the
 /// [`code_parameters`](crate::Motion::code_parameters): the values of the parameters and results that depend on
 /// them alone. [`is_regular`](MachineCode::is_regular) decides whether ẏ can be trusted. The code stays valid
 /// as long as the motion it came from, or a clone of that motion, exists.
@@ -66,12 +66,12 @@ impl MachineCode {
     }
 
     /// Whether no pivot of M vanishes, judged by the outputs `watched` after the rates and the
-    /// [`fixed_pivots`](crate::Motion::fixed_pivots), of which `fixed` gives one by its index. Where it returns false,
-    /// [`rhs`](pc_expr::VectorField::rhs) fails; that also fails where a rate is not finite, which is not checked
-    /// here.
+    /// [`fixed_pivots`](crate::Motion::fixed_pivots), each of which `fixed` returns by its index. Wherever this
+    /// function returns false, [`rhs`](pc_expr::VectorField::rhs) fails; `rhs` also fails where a rate is not finite,
+    /// which is not checked here.
     ///
     /// # Panics
-    /// If `watched` does not have as many outputs.
+    /// If `watched` does not have the expected number of outputs.
     #[inline]
     pub fn is_regular(&self, watched: &[f64], fixed: impl Fn(usize) -> f64) -> bool {
         self.pivots.check(fixed, watched).is_ok()

@@ -49,7 +49,7 @@ pub struct Motion {
     pub(super) charts: Vec<Chart>,
     /// How far the constraints are from losing rank, and the motion across a state where they do.
     pub(super) watch: Watch,
-    /// Where f jumps, if derivatives were compiled.
+    /// The surfaces on which f jumps, if derivatives were compiled.
     pub(super) jumps: Vec<RateJump>,
     /// The motion held on one side of each surface between pieces, if f is piecewise.
     pub(super) switches: Option<Box<Switches>>,
@@ -67,11 +67,12 @@ pub(super) enum Form {
 ///
 ///   M η − Cᵀ μ = y − p_0,   C η = −c_0,
 ///
-/// or p − Cᵀ μ = y, g = 0, which satisfies the constraints and is regular wherever they are (μ = 0 on them),
+/// or p − Cᵀ μ = y, g = 0, which satisfies the constraints and is regular wherever the constraints are (μ = 0
+/// where they hold),
 ///
 ///   ẏ = ∂p/∂t + (∂p/∂x) ẋ + (∂p/∂z) ż + M η̇ = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α.
 ///
-/// First-order states z follow in both.
+/// In both motions the first-order states z come last.
 #[derive(Clone, Debug)]
 pub(crate) struct InMomenta {
     pub(super) transform: LegendreTransform,
@@ -86,7 +87,7 @@ pub(crate) struct InMomenta {
     /// x, η, z, then η̇.
     pub(super) known: Vec<f64>,
     pub(super) full: Pattern,
-    /// Storage for the x, η, z read last, for their projection, and for the rates of both motions.
+    /// Storage for the last x, η, z that were read, for their projection, and for the rates of both motions.
     pub(super) state: Vec<f64>,
     pub(super) projected: Vec<f64>,
     pub(super) rates: Vec<f64>,
@@ -114,7 +115,7 @@ pub(super) struct Slopes {
 pub(crate) struct Switches {
     /// The functions that vanish on the surfaces, as text.
     pub(super) names: Vec<String>,
-    /// The motion with the sides as further parameters, after those of the system.
+    /// The motion with the sides as further parameters, which come after the parameters of the system.
     pub(super) motion: Box<Motion>,
     /// g from (t, y, p, sides).
     pub(super) functions: Evaluator,
@@ -161,7 +162,7 @@ impl Motion {
         }
     }
 
-    /// The values of the parameters, to be changed.
+    /// Mutable access to the values of the parameters.
     pub fn parameters_mut(&mut self) -> &mut [f64] {
         self.watch.forget();
         match &mut self.form {
@@ -172,8 +173,8 @@ impl Motion {
         &mut self.parameters
     }
 
-    /// The values, from index `first` on, of inputs on which M does not depend, such as external forces, to be
-    /// changed.
+    /// Mutable access to the values, from index `first` on, of inputs on which M does not depend, such as
+    /// external forces.
     pub(crate) fn inputs_mut(&mut self, first: usize) -> &mut [f64] {
         match &mut self.form {
             Form::InMomenta(motion) => motion.inner_mut().inputs_mut(first),
@@ -181,8 +182,8 @@ impl Motion {
         }
     }
 
-    /// The motion in quasi-velocities from which a motion in momenta under constraints is derived; for other
-    /// motions, this one.
+    /// The motion in quasi-velocities from which a motion in momenta under constraints is derived; for any
+    /// other motion, the motion itself.
     pub fn in_quasi_velocities(&self) -> &Motion {
         match &self.form {
             Form::InMomenta(motion) => motion.inner(),
@@ -216,7 +217,7 @@ impl Motion {
     /// ```
     ///
     /// # Panics
-    /// If one of their indices is not that of a parameter.
+    /// If one of the indices is not the index of a parameter.
     #[must_use]
     pub fn driven_by(mut self, signals: Signals) -> Motion {
         assert!(signals.places().all(|place| place < self.parameters().len()), "places of parameters");
@@ -250,8 +251,8 @@ impl Motion {
     }
 
     /// The observables at (t, y), as many as [`observable_names`](Motion::observable_names); not finite where a table
-    /// that it is [driven by](Motion::driven_by) has no value. Where the motion slides along a surface on which its rates
-    /// jump, they are those of [Filippov's combination](pc_expr::Sliding).
+    /// that it is [driven by](Motion::driven_by) has no value. Where the motion slides along a surface on which its
+    /// rates jump, the observables are those of [Filippov's combination](pc_expr::Sliding).
     ///
     /// # Panics
     /// If `y` does not have the length of the state.
@@ -271,10 +272,10 @@ impl Motion {
     }
 
     /// The observables on the side of each surface that the signs at y indicate, even where the motion slides along
-    /// the surface; the signs may then be due to rounding.
+    /// the surface; the signs may then be due to rounding errors.
     ///
     /// # Panics
-    /// As [`observe`](Motion::observe).
+    /// As for [`observe`](Motion::observe).
     pub fn observe_beside(&mut self, t: f64, y: &[f64]) -> Vec<f64> {
         let mut values = vec![f64::NAN; self.observable_names.len()];
         self.watch_beside(t, y, &mut values, true);
@@ -282,7 +283,7 @@ impl Motion {
     }
 
     /// Writes the observables. Unless `solved`, accelerations are not computed, and observables that contain
-    /// one are not finite.
+    /// an acceleration are not finite.
     pub(crate) fn watch(&mut self, t: f64, y: &[f64], values: &mut [f64], solved: bool) {
         assert_eq!(y.len(), self.names.len(), "length of the state");
         assert_eq!(values.len(), self.observable_names.len(), "number of observables");
@@ -320,8 +321,8 @@ impl Motion {
         Ok(Motion { charts: Chart::of(system)?.into_iter().collect(), ..self })
     }
 
-    /// The motion in other quasi-velocities η' = A η + A_0, with A for all those of the system, in order; it
-    /// also does not lead past a state where η' do not determine η.
+    /// The motion in other quasi-velocities η' = A η + A_0, with A for all quasi-velocities of the system, in
+    /// order; the new motion also does not lead past a state where η' does not determine η.
     ///
     /// # Errors
     /// As there.
@@ -333,8 +334,8 @@ impl Motion {
         Ok(Motion { charts: Chart::of_change(system, change)?.into_iter().collect(), ..self })
     }
 
-    /// The motion in independent quasi-velocities of a system; it also does not lead past a state where this
-    /// square matrix, through which constraints determine the others, is singular.
+    /// The motion in independent quasi-velocities of a system; the new motion also does not lead past a state
+    /// where this square matrix, through which constraints determine the others, is singular.
     ///
     /// # Errors
     /// As there.
@@ -347,7 +348,7 @@ impl Motion {
         Ok(self)
     }
 
-    /// The motion with momenta of these names.
+    /// The motion whose momenta have these names.
     pub(crate) fn of_momenta(mut motion: InMomenta, names: impl Iterator<Item = String>) -> Motion {
         motion.inner_mut().switches = None; // those of the momenta are not derived
         let inner = motion.inner();
@@ -386,7 +387,8 @@ impl Motion {
         }
     }
 
-    /// The motion with accelerations and reactions from `schur`, if that takes fewer operations or is chosen.
+    /// The motion with accelerations and reactions computed by `schur`, if that takes fewer operations or the
+    /// options choose it.
     pub(crate) fn by_joints(mut self, schur: Schur) -> Motion {
         self.form = match self.form {
             Form::Staged(staged)
@@ -405,7 +407,8 @@ impl Motion {
         Motion { constraints, surface: Some(Box::new(surface)), ..self }
     }
 
-    /// Makes the motion project to the values of these integrals from now on; returns the previous integrals.
+    /// Makes the motion project onto the values of these integrals from now on; returns the previous
+    /// integrals.
     pub(crate) fn set_kept(&mut self, integrals: Option<KeptIntegrals>) -> Option<KeptIntegrals> {
         if let Form::InMomenta(motion) = &mut self.form {
             return motion.inner_mut().set_kept(integrals);
@@ -434,9 +437,9 @@ impl Motion {
         }
     }
 
-    /// The number of operations of one evaluation of the right-hand side, kinematics included. It excludes the
-    /// factorisation if M is factorised numerically, and includes one iteration if y = ∂L/∂η is solved for η by
-    /// Newton's method.
+    /// The number of operations of one evaluation of the right-hand side, kinematics included. The number
+    /// excludes the factorisation if M is factorised numerically, and includes one iteration if y = ∂L/∂η is
+    /// solved for η by Newton's method.
     pub fn cost(&self) -> Cost {
         match &self.form {
             Form::Unrolled(unrolled) => unrolled.cost(self.names.len()),
@@ -445,7 +448,8 @@ impl Motion {
         }
     }
 
-    /// The machine code of f; none if f is more than one program of (t, y, p), reads tables, or is interpreted.
+    /// The machine code of f; none if f consists of more than one program of (t, y, p), reads tables, or is
+    /// interpreted.
     pub fn machine_code(&mut self) -> Option<MachineCode> {
         match &mut self.form {
             Form::Unrolled(unrolled) if self.signals.is_empty() => unrolled.machine_code(self.names.len()),

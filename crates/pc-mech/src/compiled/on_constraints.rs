@@ -61,7 +61,7 @@ impl Motion {
     /// Moves the η of a state onto the constraints, and leaves its x as they are.
     ///
     /// # Errors
-    /// As the [projection](pc_expr::VectorField::project) of the state.
+    /// As for the [projection](pc_expr::VectorField::project) of the state.
     ///
     /// # Panics
     /// If `y` does not have the length of the state.
@@ -73,8 +73,8 @@ impl Motion {
     }
 
     /// Moves the η of a state onto the constraints, and leaves its x as they are. The quasi-velocities with the
-    /// indices `held` change only as far as constraints on them alone demand; the others follow. Both move by the
-    /// shortest path in the kinetic metric.
+    /// indices `held` change only as far as constraints on them alone demand; the others adjust to them. All of
+    /// them move by the shortest path in the kinetic metric.
     ///
     /// # Errors
     /// A [`Failure`] where no such velocities are found.

@@ -37,12 +37,12 @@ pub struct CompileOptions {
 /// same numbers up to rounding errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TreeElimination {
-    /// Joint by joint if that takes fewer operations, as it does for all large trees.
+    /// Joint by joint if that takes fewer operations, which is the case for all large trees.
     #[default]
     Shorter,
     /// Joint by joint: the number of operations grows in proportion to the number of bodies.
     ByJoints,
-    /// By factorising the mass matrix of the whole tree.
+    /// Factorisation of the mass matrix of the whole tree.
     Whole,
 }
 

@@ -13,15 +13,15 @@ use pc_expr::{
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::point::Point;
 
-/// The unit of errors. An operation has an error of a quarter of it; a long sum, for which only the rounding
-/// errors of the terms are counted, may have a larger one.
+/// The unit of errors. An operation has an error of a quarter of this unit; a long sum, for which only the
+/// rounding errors of the terms are counted, may have a larger error.
 const UNIT: f64 = 2.0 * f64::EPSILON;
 
 /// Keeps a quotient of two zeros from being NaN.
 const TINY: f64 = 1e-300;
 
-/// The magnitude below which numbers have fewer digits and a constant spacing, in units of errors. It is
-/// taken four times as large, since products with so small a number are rounded again.
+/// The magnitude below which numbers have fewer digits and a constant spacing, in units of errors. The value
+/// is four times the actual one, since products with so small a number are rounded again.
 const SPACING: f64 = 4.0 * f64::MIN_POSITIVE;
 
 /// Compiled functions with bounds on their rounding errors.
@@ -70,7 +70,7 @@ impl Measured {
     /// The values at (t, y).
     ///
     /// # Errors
-    /// [`EvaluationFailure::Expr`] if one is not finite.
+    /// [`EvaluationFailure::Expr`] if a value is not finite.
     pub(crate) fn try_eval(&mut self, at: Point<'_>) -> Result<&[f64], EvaluationFailure> {
         self.eval(at);
         check_finite(self.values(), &self.functions, at)?;
@@ -106,7 +106,8 @@ impl Measured {
 }
 
 /// An expression with a first-order bound on its rounding errors, in units of the last digit of 1.0. The bound
-/// is at least the absolute value, so that the rounding errors of sums are included in those of their terms.
+/// is at least the absolute value, so that the rounding errors of sums are included in the bounds for their
+/// terms.
 #[derive(Clone, Copy)]
 struct WithError<'g> {
     value: Expr<'g>,
@@ -114,7 +115,7 @@ struct WithError<'g> {
 }
 
 impl<'g> WithError<'g> {
-    /// A number with one rounding.
+    /// A number that has been rounded once.
     fn rounded(value: Expr<'g>) -> WithError<'g> {
         WithError { value, error: value.abs() }
     }

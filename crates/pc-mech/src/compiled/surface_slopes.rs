@@ -48,7 +48,7 @@ impl SurfaceSlopes {
         })
     }
 
-    /// The slopes of one surface with their columns.
+    /// The slopes of one surface, each with its column.
     pub(super) fn of(
         &mut self,
         surface: usize,

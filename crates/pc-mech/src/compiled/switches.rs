@@ -17,14 +17,14 @@ use crate::system::signals::Signals;
 
 /// Motions with more surfaces than this are not held.
 const MOST: usize = 256;
-/// The relative difference above which rates do not count as a sum of the changes at surfaces.
+/// The relative difference above which rates do not count as the sum of the changes at surfaces.
 const ADDS_UP: f64 = 1e-9;
 /// A surface that will be reached within this fraction of the time t counts as reached.
 const AT_ONCE: f64 = 1e-9;
 
 impl<'g> FirstOrder<'g> {
-    /// The motion held on its pieces; none if it has a single piece, or if a surface contains unknowns that are solved
-    /// for numerically.
+    /// The motion, held on one piece at a time; none if it has a single piece, or if a surface contains unknowns that
+    /// are solved for numerically.
     ///
     /// # Errors
     /// As for [`Program::new`].
@@ -88,7 +88,8 @@ impl<'g> FirstOrder<'g> {
     }
 }
 
-/// The functions of surfaces, with the signs of the preceding functions in place of sides.
+/// The functions that vanish on the surfaces, as text, with the signs of the preceding functions in place of
+/// sides.
 fn written_out<'g>(graph: &'g Graph, surfaces: &[Surface<'g>]) -> Vec<String> {
     let mut signs: Vec<(Expr<'g>, Expr<'g>)> = Vec::new();
     let written = surfaces.iter().map(|surface| {
@@ -100,8 +101,8 @@ fn written_out<'g>(graph: &'g Graph, surfaces: &[Surface<'g>]) -> Vec<String> {
 }
 
 impl<'g> FirstOrder<'g> {
-    /// The motion of a system on sides between −1 and 1, with the observables of this system; none if these depend
-    /// neither on sides nor on solved unknowns.
+    /// The motion of a system on sides between −1 and 1, with the observables of this system; none if the
+    /// observables depend neither on sides nor on unknowns that are solved for.
     ///
     /// # Errors
     /// As for [`Program::new`].
@@ -199,12 +200,12 @@ impl Switches {
         self.sides.as_ref().filter(|sides| sides.contains(&0.0)).cloned()
     }
 
-    /// Writes the observables where the motion slides along a surface at (t, y); false if it does not, or where none of
-    /// them changes from one side to the other.
+    /// Writes the observables where the motion slides along a surface at (t, y); false if it does not slide, or if no
+    /// observable changes from one side to the other.
     ///
-    /// They are those of Filippov's combination: for a body held by friction, zero acceleration and the friction
-    /// force that holds it. The motion slides if f leads back to the surface from both sides and reaches it within a
-    /// time as short as a rounding error.
+    /// These observables are those of Filippov's combination: for a body held by friction, zero acceleration and the
+    /// friction force that holds it. The motion slides if f leads back to the surface from both sides and reaches it
+    /// within a time as short as a rounding error.
     pub(crate) fn observe(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> bool {
         if self.observing.is_none() {
             return false;
@@ -222,7 +223,8 @@ impl Switches {
         true
     }
 
-    /// The sides of all surfaces at (t, y), σ for those along which the motion slides; none if it does not slide.
+    /// The sides of all surfaces at (t, y), σ for surfaces along which the motion slides; none if it does not
+    /// slide.
     fn weights(&mut self, t: f64, y: &[f64]) -> Option<Vec<f64>> {
         let mut functions = vec![f64::NAN; self.names.len()];
         let mut sides = vec![1.0; self.names.len()];
@@ -259,7 +261,7 @@ impl Switches {
     /// The rates of the motion on the sides held.
     ///
     /// # Errors
-    /// As [`Motion::rhs`](VectorField::rhs).
+    /// As for [`Motion::rhs`](VectorField::rhs).
     pub(crate) fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
         match self.sliding() {
             Some(sides) => {
@@ -345,7 +347,7 @@ impl Switches {
     /// The Taylor series of the motion on the sides held.
     ///
     /// # Errors
-    /// As [`Motion::expand`](VectorField::expand).
+    /// As for [`Motion::expand`](VectorField::expand).
     pub(crate) fn expand(&mut self, t: f64, y: &[f64], order: usize) -> Result<&TaylorSeries, Failure> {
         if let Some(sides) = self.sliding() {
             return self.expand_sliding(&sides, &[], (t, y), order);
@@ -357,7 +359,7 @@ impl Switches {
     /// The Taylor series of the motion on the sides held, with its derivatives with respect to `columns`.
     ///
     /// # Errors
-    /// As [`Motion::expand_varied`](VectorField::expand_varied).
+    /// As for [`Motion::expand_varied`](VectorField::expand_varied).
     pub(crate) fn expand_varied(
         &mut self,
         columns: &[Option<usize>],
@@ -390,7 +392,7 @@ impl Switches {
     /// to `columns`.
     ///
     /// # Errors
-    /// As [`Sliding::of`]; also if f is not a sum of the changes at these surfaces.
+    /// As for [`Sliding::of`]; also if f is not the sum of the changes at these surfaces.
     fn expand_sliding(
         &mut self,
         sides: &[f64],
@@ -426,7 +428,8 @@ impl Switches {
         Ok(series)
     }
 
-    /// The program of the motion along `surfaces`, out of `len` in all; none if f is not a program.
+    /// The program of the motion along `surfaces`, which are some of the `len` surfaces; none if f is not a
+    /// single program.
     fn program_along(&self, surfaces: &[usize], len: usize) -> Option<Program> {
         let program = self.motion.program_of_rates()?;
         let (dim, first) = (program.state_len(), self.motion.parameters.len() - len);

@@ -17,8 +17,8 @@ use crate::error::{EvaluationError, FrameError, MechError};
 const MOST_RETURNS: usize = 4;
 
 impl Motion {
-    /// Projects to unit quaternions, then to the constraints by the shortest path in the kinetic metric, then along
-    /// them to the integrals.
+    /// Projects onto unit quaternions, then onto the constraints by the shortest path in the kinetic metric, then
+    /// along the constraints to the values of the integrals.
     pub(super) fn project_in_turn(&mut self, t: f64, y: &mut [f64]) -> Result<(), EvaluationFailure> {
         self.quaternions.normalise(y);
         if let Some(surface) = &mut self.surface {
@@ -359,20 +359,20 @@ impl VectorField for Motion {
     }
 }
 
-/// Whether a held motion has produced a value: beyond a surface it may have none, but the motion on the other
-/// side may have one.
+/// Whether a held motion has produced a value: beyond a surface it may have no value, though the motion on
+/// the other side may have one.
 fn is_written(outcome: &Result<(), Failure>) -> bool {
     outcome.as_ref().err().is_none_or(|failure| !failure.is_recoverable())
 }
 
 impl Motion {
-    /// The surfaces and sides of the motion, while it is held on them.
+    /// The surfaces at which the motion switches pieces, while the motion is held on given sides of them.
     #[inline]
     fn holding(&mut self) -> Option<&mut Switches> {
         self.switches.as_deref_mut().filter(|switches| switches.holds())
     }
 
-    /// As [`leads`](VectorField::leads), with these rates.
+    /// Does the work of [`leads`](VectorField::leads), with rates computed by `rates`.
     pub(super) fn leads_by(
         &mut self,
         from: (f64, &[f64]),
@@ -402,7 +402,7 @@ impl Motion {
         }
     }
 
-    /// Returns, as an error, why there are no Taylor series, if there are none.
+    /// Returns an error that says why there are no Taylor series, if there are none.
     fn check_series(&self) -> Result<(), Failure> {
         let because = match &self.form {
             Form::Unrolled(_) if self.signals.is_empty() => return Ok(()),
@@ -420,7 +420,8 @@ impl Motion {
     /// Writes ∂f/∂t, one number per component; inputs given by tables count as constant parameters.
     ///
     /// # Errors
-    /// As [`rhs`](VectorField::rhs), and where it was not [compiled](crate::CompileOptions::time_derivative).
+    /// As for [`rhs`](VectorField::rhs), and if ∂f/∂t was not
+    /// [compiled](crate::CompileOptions::time_derivative).
     pub fn time_derivative(&mut self, t: f64, y: &[f64], derivative: &mut [f64]) -> Result<(), Failure> {
         self.read_signals(t)?;
         let at = Point { t, y, p: &self.parameters };

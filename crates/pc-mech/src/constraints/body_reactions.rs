@@ -35,14 +35,15 @@ impl<'g> BodyReaction<'g> {
         self.forces.as_ref()?.get(constraint).map(Vec::as_slice)
     }
 
-    /// The torque λ_α n_α, likewise, with 3 components. None if it is not determined or the body does not turn.
+    /// The torque λ_α n_α, with the same symbols, and with 3 components. None if it is not determined or the
+    /// body does not turn.
     pub fn torque(&self, constraint: usize) -> Option<&[Expr<'g>]> {
         self.torques.as_ref()?.get(constraint).map(Vec::as_slice)
     }
 }
 
 impl<'g> System<'g> {
-    /// The bodies from which it was built, in order, with their velocities.
+    /// The bodies from which the system was built, in order, with their velocities.
     pub fn bodies(&self) -> &[BodyVelocity<'g>] {
         &self.bodies.list
     }
@@ -54,11 +55,12 @@ impl<'g> Multipliers<'g> {
     ///
     ///   Σ (F · ∂ṙ/∂η_s + N · ∂ω/∂η_s) = λ_α C_αs,   s = 1..k.
     ///
-    /// This determines the force on a body if ṙ can be varied independently of the velocities of all other
-    /// bodies, of its own ω, and of other velocities in the kinetic energy: the rank of the derivatives of all
-    /// of these with respect to η must be the rank of ∂ṙ/∂η plus that of the others. It is determined up to a
-    /// part normal to all ṙ that the coordinates allow; this part is left out, since it belongs to the supports
-    /// implied by the coordinates. The same holds for torques, with ω.
+    /// The condition determines the force on a body if ṙ can be varied independently of the velocities of all
+    /// other bodies, of its own ω, and of other velocities in the kinetic energy: the rank of the derivatives
+    /// of all of these with respect to η must be the rank of ∂ṙ/∂η plus the rank of the other derivatives. The
+    /// force is determined up to a part normal to all ṙ that the coordinates allow; this part is left out,
+    /// since it belongs to the supports implied by the coordinates. The same holds for torques, with ω in
+    /// place of ṙ.
     ///
     /// If the choice of coordinates ties velocities together, as the angle of a rod does for two masses on it,
     /// the forces between them are not reactions of constraints, and virtual work does not determine how they
@@ -133,8 +135,8 @@ impl<'a, 'g> Velocities<'a, 'g> {
         rank(&self.blocks.concat()) == rank(&self.blocks[b]) + rank(&others)
     }
 
-    /// The z_α that solve (JᵀJ) z_α = C_α, where J consists of all blocks: J z_α are the least forces. None if
-    /// the blocks do not determine all quasi-velocities.
+    /// The z_α that solve (JᵀJ) z_α = C_α, where J consists of all blocks: J z_α are the smallest possible
+    /// forces. None if the blocks do not determine all quasi-velocities.
     fn of_reactions(&self, coefficients: &Matrix<Expr<'g>>) -> Option<Vec<Vec<Expr<'g>>>> {
         let (graph, rows, k) = (self.graph(), self.blocks.concat(), coefficients.columns());
         if graph.generic_rank(&rows) < k {

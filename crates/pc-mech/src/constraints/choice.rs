@@ -7,7 +7,7 @@ use crate::constraints::multipliers::Multipliers;
 use crate::equations::poincare::Equations;
 use crate::error::{ConstraintError, MechError};
 
-/// The maximum number of choices that are compared by their equations.
+/// The maximum number of choices whose equations are compared.
 const MOST_TRIED: usize = 20;
 /// Equations are compared only if there are at most this many constraints and the Lagrangian has at most this
 /// many operations.
@@ -17,12 +17,12 @@ const LONGEST_TRIED: u32 = 1000;
 /// motion then stays away from states with singular equations for a while.
 const REGULAR: f64 = 0.5;
 /// A pivot chosen because it is the shortest in print must be at least this fraction of the largest, so that
-/// equations lose at most a digit. (There is a second reason to derive few choices: forms made earlier in a
-/// graph influence later ones.)
+/// equations lose at most one digit. (There is a second reason to derive the equations of only a few choices:
+/// expressions formed earlier in a graph influence the form of later ones.)
 const PIVOT: f64 = 0.1;
 
 /// The matrix C at a state, with its rows scaled to length one and its columns divided by the square roots of
-/// the masses, so that it does not depend on units.
+/// the masses, so that the matrix does not depend on units.
 struct Weighed {
     rows: Vec<Vec<f64>>,
 }
@@ -32,8 +32,9 @@ impl<'g> Multipliers<'g> {
     /// [independent](Multipliers::in_independent_velocities) ones.
     ///
     /// # Errors
-    /// [`ConstraintError::NotIndependent`] if their number is wrong, one does not belong to the system, or they do not
-    /// determine the others at the values `at` of time, coordinates, quasi-velocities and parameters.
+    /// [`ConstraintError::NotIndependent`] if the number of quasi-velocities is wrong, one of them does not belong
+    /// to the system, or they do not determine the others at the values `at` of time, coordinates, quasi-velocities
+    /// and parameters.
     ///
     /// ```
     /// use pc_mech::{Constraint, Graph, System};
@@ -79,13 +80,13 @@ impl<'g> Multipliers<'g> {
         Ok(self.depending(dependent))
     }
 
-    /// The equations with independent quasi-velocities whose equations, as `derive` makes them, are shortest in
-    /// print among those that are regular at the values `at`. Among equally short ones, those with the best
+    /// Of all equations in independent quasi-velocities that are regular at the values `at`, those that are
+    /// shortest in print, as derived by `derive`. Among equally short equations, those with the best
     /// conditioned constraints are taken.
     ///
-    /// With more than 20 choices, more than 3 constraints or a long Lagrangian no equations are compared: C is then
-    /// eliminated, each time with the pivot that is shortest in print among those of at least a tenth of the
-    /// largest.
+    /// If there are more than 20 choices or more than 3 constraints, or the Lagrangian is long, no equations are
+    /// compared: C is then eliminated, each time with the pivot that is shortest in print among those that are at
+    /// least a tenth of the largest.
     ///
     /// # Errors
     /// The errors of [`dependent_at`](Multipliers::dependent_at).

@@ -11,13 +11,13 @@ use crate::system::system::System;
 pub struct Constraint<'g> {
     pub(super) name: String,
     pub(super) expression: Expr<'g>,
-    /// Whether g need not be affine in η.
+    /// Whether g is allowed not to be affine in η.
     pub(super) nonlinear: bool,
 }
 
 impl<'g> Constraint<'g> {
     /// The condition that `expression` vanishes. It is a condition on velocities, affine in η, if it contains a
-    /// quasi-velocity, and one on positions otherwise. The name is used in messages and reactions.
+    /// quasi-velocity, and a condition on positions otherwise. The name is used in messages and reactions.
     pub fn new(name: impl Into<String>, expression: Expr<'g>) -> Constraint<'g> {
         Constraint { name: name.into(), expression, nonlinear: false }
     }
@@ -47,7 +47,7 @@ impl<'g> Constraint<'g> {
         Constraint { name: name.into(), expression, nonlinear: true }
     }
 
-    /// Whether it was declared [nonlinear](Constraint::nonlinear).
+    /// Whether the constraint was declared [nonlinear](Constraint::nonlinear).
     pub fn is_nonlinear(&self) -> bool {
         self.nonlinear
     }
@@ -57,7 +57,7 @@ impl<'g> Constraint<'g> {
         &self.name
     }
 
-    /// The vanishing expression.
+    /// The expression that vanishes.
     pub fn expression(&self) -> Expr<'g> {
         self.expression
     }

@@ -1,4 +1,4 @@
-//! Reactions as functions of the state, with which constraints of any kind enter the equations for all
+//! Reactions as functions of the state, which bring constraints of any kind into the equations for all
 //! velocities.
 
 use pc_algebra::Matrix;
@@ -34,9 +34,9 @@ impl<'g> Multipliers<'g> {
 
     /// The reactions as functions of the state: from M η̇ = r + Cᵀ λ and C η̇ = −ċ,
     ///
-    ///   (C M⁻¹ Cᵀ) λ = −ċ − C M⁻¹ r,   ċ = (∂g/∂x) ẋ + ∂g/∂t,
+    ///   (C M⁻¹ Cᵀ) λ = −ċ − C M⁻¹ r,   ċ = (∂g/∂x) ẋ + ∂g/∂t.
     ///
-    /// m of them, in terms of (t, x, η). They keep g constant, whatever its value.
+    /// There are m of these expressions, in terms of (t, x, η). The reactions keep g constant, whatever its value.
     ///
     /// ```
     /// use pc_mech::{Constraint, Graph, System};
@@ -76,16 +76,16 @@ impl<'g> Multipliers<'g> {
         Ok(graph.shorten(&reactions, &system.collecting_order()))
     }
 
-    /// The name of the first constraint whose row adds nothing to the rank of those before it.
+    /// The name of the first constraint whose row adds nothing to the rank of the rows before it.
     fn first_dependent(&self, gram: &Matrix<Expr<'g>>) -> Option<String> {
         let (graph, rows) = (self.equations.system.graph(), gram.to_rows());
         let dependent = (0..rows.len()).find(|&a| graph.generic_rank(&rows[..=a]) <= a)?;
         Some(self.constraints()[dependent].name().to_owned())
     }
 
-    /// The system of all velocities on which the [reactions](Multipliers::reactions_of_state) act as forces
-    /// Q_s + C_αs λ_α of the state: its equations (9) are the equations of motion, in every form, and the constraints
-    /// are integrals. Their numerical errors are not corrected.
+    /// The system of all velocities on which the [reactions](Multipliers::reactions_of_state) act as forces, Q_s +
+    /// C_αs λ_α, that depend on the state: its equations (9) are the equations of motion, in every form, and the
+    /// constraints are integrals. Numerical drift from the constraints is not corrected.
     ///
     /// # Errors
     /// As for [`reactions_of_state`](Multipliers::reactions_of_state).

@@ -19,10 +19,11 @@ impl<'g> Multipliers<'g> {
     ///
     ///   d/dt ∂L/∂ẋ_s − ∂L/∂x_s − b_js ∂L/∂x_j = Q_s   (14)–(16)
     ///
-    /// with X_s = ∂/∂x_s + b_js ∂/∂x_j if the η are velocities. The dependent ones are those that the constraints
-    /// determine best at the values `at` of time, coordinates, quasi-velocities and parameters. The equations are
-    /// singular where det C_D = 0, even if the constraints themselves are not. The brackets follow from those of the
-    /// system, as described at [`Elimination::structure_coefficients`], whatever the rank of the frame.
+    /// with X_s = ∂/∂x_s + b_js ∂/∂x_j if the η are velocities. The dependent quasi-velocities η_D are those that
+    /// the constraints determine best at the values `at` of time, coordinates, quasi-velocities and parameters. The
+    /// equations are singular where det C_D = 0, even if the constraints themselves are not. The brackets follow
+    /// from those of the system, as described at [`Elimination::structure_coefficients`], whatever the rank of the
+    /// frame.
     ///
     /// # Errors
     /// [`ConstraintError::Singular`] if the constraints are dependent there; [`ConstraintError::NotAffine`];
@@ -99,9 +100,9 @@ impl<'g> Multipliers<'g> {
     /// The system with the dependent quasi-velocities [solved for](Multipliers::solved_for) and substituted, and with
     /// these structure coefficients.
     ///
-    /// Its equations (9) are the equations of motion if the constraints are integrable and `structure` is that of the
-    /// velocities they allow. If they are not, the terms of the eliminated momenta are missing, as in (32), and have
-    /// to be [added](System::with_added_forces) to the forces.
+    /// Its equations (9) are the equations of motion if the constraints are integrable and `structure` consists of
+    /// the coefficients for the velocities that they allow. If the constraints are not integrable, the terms of the
+    /// eliminated momenta are missing, as in (32), and have to be [added](System::with_added_forces) to the forces.
     ///
     /// # Errors
     /// [`ShapeError`](crate::ShapeError) if `structure` is for a different number of quasi-velocities.
@@ -142,7 +143,7 @@ impl<'g> Multipliers<'g> {
         })
     }
 
-    /// The equations with a preference: the k − m listed quasi-velocities are taken as
+    /// The same equations with a preference: the k − m listed quasi-velocities are taken as
     /// [independent](Multipliers::in_independent_velocities) wherever they determine the others well.
     #[must_use]
     pub fn preferring(mut self, independent: &[Expr<'g>]) -> Multipliers<'g> {
@@ -163,8 +164,8 @@ impl<'g> Multipliers<'g> {
     }
 
     /// The reactions λ in terms of (t, x) and independent quasi-velocities, each of which is given with its
-    /// acceleration. With the dependent ones [solved for](Multipliers::solved_for), from their rows of M η̇ = r + Cᵀ
-    /// λ,
+    /// acceleration. With the dependent quasi-velocities [solved for](Multipliers::solved_for), the reactions follow
+    /// from their rows of M η̇ = r + Cᵀ λ:
     ///
     ///   C_αD λ_α = (M η̇ − r)_D,
     ///

@@ -18,15 +18,15 @@ use crate::system::system::System;
 ///
 ///   M η̇ = r + Cᵀ λ,   C η̇ = −(dC/dt) η − dc_0/dt,   ẋ = b η + b_0,
 ///
-/// of a system whose quasi-velocities are bound by C η + c_0 = 0: conditions on velocities, or the derivatives
-/// C_αs = X_s f_α, c_α0 = X_0 f_α of conditions on positions. M and r are those of (9); λ_α is the reaction
-/// conjugate to the condition, and has the power −λ_α c_α0. For [nonlinear](Constraint::nonlinear) conditions
-/// g(t, x, η) = 0, C is ∂g/∂η and C η̇ = −(∂g/∂x) ẋ − ∂g/∂t.
+/// of a system whose quasi-velocities are constrained by C η + c_0 = 0: conditions on velocities, or the
+/// derivatives C_αs = X_s f_α, c_α0 = X_0 f_α of conditions on positions. M and r are those of (9); λ_α is the
+/// reaction conjugate to the condition, and its power is −λ_α c_α0. For [nonlinear](Constraint::nonlinear)
+/// conditions g(t, x, η) = 0, C is ∂g/∂η, and C η̇ = −(∂g/∂x) ẋ − ∂g/∂t.
 ///
-/// All k quasi-velocities are components of the state. At each evaluation those that determine the others best are
-/// taken as independent, so the only singular positions are those where the constraints themselves are singular; the
-/// rates do not depend on the choice. The [projection](pc_expr::VectorField::project) of the compiled motion
-/// corrects numerical drift from the constraints.
+/// All k quasi-velocities are components of the state. At each evaluation the quasi-velocities that determine the
+/// others best are taken as independent, so the only singular positions are those where the constraints themselves
+/// are singular; the rates do not depend on the choice. The [projection](pc_expr::VectorField::project) of the
+/// compiled motion corrects numerical drift from the constraints.
 ///
 /// ```
 /// use pc_mech::{Constraint, Graph, System, VectorField};
@@ -57,11 +57,11 @@ pub struct Multipliers<'g> {
     pub(crate) right: Vec<Expr<'g>>,
     /// The m symbols λ.
     pub(crate) reactions: Vec<Expr<'g>>,
-    /// Constraints that follow from these, which are checked but not imposed.
+    /// Constraints that follow from the imposed ones; they are checked but not imposed.
     pub(super) followers: Vec<Constraint<'g>>,
     /// The number of independent constraints, which come first almost everywhere.
     pub(super) rank: usize,
-    /// The indices of the quasi-velocities that depend on the others, wherever these determine them.
+    /// The indices of the quasi-velocities that depend on the others, wherever the others determine them.
     pub(crate) dependent: Option<Vec<usize>>,
     /// Whether the reactions are among the observables.
     pub(super) observed: bool,
@@ -74,9 +74,10 @@ impl<'g> System<'g> {
     /// [`ConstraintError::NotAffine`] for a constraint on velocities that is neither affine nor declared
     /// [nonlinear](Constraint::nonlinear); [`ConstraintError::TooMany`] if no velocity is left free;
     /// [`FrameError::OfState`](crate::FrameError::OfState) for a condition on first-order states;
-    /// [`ConstraintError::Dependent`] for one that follows from those before it, or contradicts them;
+    /// [`ConstraintError::Dependent`] for a constraint that follows from those before it, or contradicts them;
     /// [`LagrangianError::Degenerate`](crate::LagrangianError::Degenerate) if the constraints leave velocities
-    /// without inertia; [`ConstraintError::Jumps`] for one that jumps at a surface that the motion crosses.
+    /// without inertia; [`ConstraintError::Jumps`] for a constraint that jumps at a surface that the motion
+    /// crosses.
     pub fn with_multipliers(&self, constraints: &[Constraint<'g>]) -> Result<Multipliers<'g>, MechError> {
         let graph = self.graph();
         let (k, m) = (self.quasi_velocities.len(), constraints.len());
@@ -184,9 +185,9 @@ impl<'g> Multipliers<'g> {
     }
 
     /// The equations with further constraints that are implied by the present ones. Where the present
-    /// constraints are nearly dependent, they are replaced by those among the further ones that follow only
-    /// where the present ones hold, as the bars of an overconstrained mechanism take turns in carrying the
-    /// load. The individual reactions are then undetermined, and NaN. A
+    /// constraints are nearly dependent, they are replaced by those further constraints that are implied only
+    /// where the present ones hold, just as the bars of an overconstrained mechanism take turns in carrying
+    /// the load. The individual reactions are then undetermined, and NaN. A
     /// [projection](pc_expr::VectorField::project) of the compiled motion to a state where one of the further
     /// constraints does not vanish is refused, as [`ConstraintError::Departed`].
     #[must_use]
@@ -201,7 +202,7 @@ impl<'g> Multipliers<'g> {
         (0..self.coefficients.columns()).map(on).collect()
     }
 
-    /// The equations with the reactions as observables, after all others.
+    /// The equations with the reactions as observables, which come after all other observables.
     #[must_use]
     pub fn observe_reactions(self) -> Multipliers<'g> {
         Multipliers { observed: true, ..self }
@@ -240,7 +241,7 @@ impl<'g> Multipliers<'g> {
     }
 
     /// The same equations with spare constraints after the others: implied constraints that are independent of
-    /// them away from the states that satisfy the constraints.
+    /// the others away from the states that satisfy the constraints.
     fn with_spare(&self) -> Multipliers<'g> {
         let (system, mut whole) = (&self.equations.system, self.clone());
         let graph = system.graph();
@@ -286,8 +287,8 @@ impl<'g> Multipliers<'g> {
         LegendreTransform::solving(system, &momenta, &equations, Some(&nearby))
     }
 
-    /// The equations M η = y − p_0 for a quadratic L, p(η) = y for any other. They are the equations with
-    /// multipliers for momenta that satisfy the constraints.
+    /// The equations M η = y − p_0 for a quadratic L, p(η) = y for any other. For momenta that satisfy the
+    /// constraints, these are the equations with multipliers.
     fn free_legendre_equations(&self, momenta: &[Expr<'g>], guess: &[f64]) -> FirstOrder<'g> {
         let (system, graph, eta) = (&self.equations.system, self.graph(), self.quasi_velocities());
         let (mass, right, implicit) = match quadratic(graph, system.lagrangian, eta) {
@@ -358,7 +359,7 @@ impl<'g> Multipliers<'g> {
         self.dependent.as_deref().unwrap_or_default()
     }
 
-    /// The equations in which the quasi-velocities with these m indices are the dependent ones, wherever the
+    /// The same equations, with the quasi-velocities with these m indices as the dependent ones wherever the
     /// others determine them.
     #[must_use]
     pub fn depending(&self, dependent: Vec<usize>) -> Multipliers<'g> {

@@ -10,8 +10,8 @@ use crate::emit::{c, rust};
 use crate::equations::poincare::Equations;
 use crate::error::{MechError, ShapeError};
 
-/// The product of the operations of a right-hand side and the length of the state beyond which the Jacobian has
-/// some ten thousand operations: too many to read, and minutes of work for compilers.
+/// If the number of operations of a right-hand side times the length of the state exceeds this, the Jacobian
+/// has some ten thousand operations: too many to read, and enough to keep a compiler busy for minutes.
 const LONG_JACOBIAN: usize = 30_000;
 
 /// Equations longer than this are left out of the comment at the head of a file.
@@ -24,10 +24,10 @@ impl<'g> Equations<'g> {
     /// the mass matrix and the energy are computed from a table of operations instead, and the Jacobian by the chain
     /// rule.
     ///
-    /// C source consists of a header and a source file, Rust source of one file. Both explain their use at their
-    /// head. The same system, built in a new graph, gives the same text. The operations are those of a [`Program`] of
-    /// the same expressions, so that the values are those of the interpreter to the last bit where the mathematical
-    /// library is the same.
+    /// C source consists of a header and a source file, Rust source of one file. Each file explains its use at its
+    /// head. The same system, built in a new graph, gives the same source text. The operations are those of a
+    /// [`Program`] of the same expressions, so that the values agree with those of the interpreter to the last bit
+    /// where the mathematical library is the same.
     ///
     /// ```
     /// use pc_mech::{EmitOptions, Graph, Language, System};
@@ -72,7 +72,7 @@ impl<'g> Equations<'g> {
 
     /// Whether derivatives of the right-hand side are too long to be written out, in which case
     /// [`emit`](Equations::emit) does not write them out. The derivatives in a
-    /// [directional](SourceFunction::directional) function would then also take compilers minutes.
+    /// [directional](SourceFunction::directional) function would then also take a compiler minutes.
     ///
     /// # Errors
     /// As for [`emit`](Equations::emit).
@@ -324,7 +324,7 @@ impl<'g> Solved<'g> {
     }
 }
 
-/// Prints programs of the same inputs.
+/// Prints programs that have the same inputs.
 struct Writer<'a, 'g> {
     system: FirstOrder<'g>,
     options: &'a EmitOptions,
@@ -362,7 +362,7 @@ impl<'a, 'g> Writer<'a, 'g> {
         self.routine_along(&[], name, purpose, (array, extent), values, slot)
     }
 
-    /// As [`routine`](Self::routine), but with these symbols for a direction after the parameters.
+    /// Like [`routine`](Self::routine), but with these symbols for a direction after the parameters.
     fn routine_along(
         &self,
         direction: &[Expr<'g>],

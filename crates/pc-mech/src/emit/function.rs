@@ -1,4 +1,4 @@
-//! Functions that are written in addition to those of the equations.
+//! Functions that are written in addition to the functions for the equations.
 
 use pc_expr::Expr;
 
@@ -13,7 +13,7 @@ pub struct SourceFunction<'g> {
 
 impl<'g> SourceFunction<'g> {
     /// A function with this name, which must be an identifier, that writes these values, each given with a
-    /// word for its meaning. They may contain the [symbols of the
+    /// word for its meaning. The values may contain the [symbols of the
     /// accelerations](crate::System::accelerations). The purpose is used as the end of a sentence that begins
     /// with “Writes”.
     pub fn new(
@@ -24,8 +24,8 @@ impl<'g> SourceFunction<'g> {
         SourceFunction { name: name.into(), purpose: purpose.into(), values, is_directional: false }
     }
 
-    /// A function that writes the derivatives of ẏ, then those of these values, along a direction (δy, δp),
-    /// which follows p in the array of the parameters:
+    /// A function that writes the derivatives of ẏ, then the derivatives of these values, along a direction
+    /// (δy, δp), which comes after p in the array of parameters:
     ///
     ///   δẏ = (∂ẏ/∂y) δy + (∂ẏ/∂p) δp,   δv = (∂v/∂y) δy + (∂v/∂p) δp.
     ///

@@ -46,8 +46,7 @@ pub(super) fn files(source: &Source<'_>) -> Vec<EmittedFile> {
     vec![EmittedFile { name, text }]
 }
 
-/// Encloses indented lines between fences: rustdoc would otherwise take them for Rust and
-/// test them.
+/// Encloses indented lines between fences: rustdoc would otherwise take the lines for Rust and test them.
 fn fenced(lines: &[String]) -> Vec<String> {
     let mut fenced = Vec::new();
     for run in lines.chunk_by(|a, b| a.starts_with("    ") == b.starts_with("    ")) {

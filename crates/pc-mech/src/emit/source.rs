@@ -26,7 +26,8 @@ pub(super) struct Start {
 }
 
 impl EmitOptions {
-    /// Source in `language`; files and functions are called `name`, made an identifier if it is not one.
+    /// Source in `language`; files and functions are called `name`, changed into an identifier if it is not
+    /// one.
     pub fn new(language: Language, name: impl Into<String>) -> EmitOptions {
         let name = name.into();
         EmitOptions {
@@ -55,7 +56,7 @@ impl EmitOptions {
     }
 
     /// Sets an initial state (coordinates, quasi-velocities, then first-order states) and the times of a motion.
-    /// With these the source has a `main` that integrates it.
+    /// With these the source has a `main` that integrates the motion.
     #[must_use]
     pub fn start(mut self, t_start: f64, state: &[f64], t_end: f64) -> EmitOptions {
         self.start = Some(Start { t: t_start, state: state.to_vec(), t_end });
@@ -70,8 +71,8 @@ impl EmitOptions {
     }
 
     /// Whether to write a·b + c as a single operation, with a single rounding. This is fast only where the
-    /// processor has such an operation and the compiler may use it, and the results differ from those of the
-    /// library by rounding errors.
+    /// processor has such an operation and the compiler may use it, and the results then differ from the
+    /// library's by rounding errors.
     #[must_use]
     pub fn fused(mut self, fused: bool) -> EmitOptions {
         self.fused = fused;
@@ -82,7 +83,7 @@ impl EmitOptions {
 /// A source file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EmittedFile {
-    /// Its name, without directory.
+    /// The name of the file, without its directory.
     pub name: String,
     /// Its text.
     pub text: String,
@@ -95,9 +96,9 @@ pub(super) enum Extent {
     One,
     /// One for each component of the state.
     State,
-    /// A square matrix of these.
+    /// A square matrix with a row and a column for each component of the state.
     StateSquared,
-    /// A square matrix of the quasi-velocities.
+    /// A square matrix with a row and a column for each quasi-velocity.
     QuasiVelocitiesSquared,
     Integrals,
     Outputs,

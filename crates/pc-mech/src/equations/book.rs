@@ -23,8 +23,9 @@ impl<'g> Equations<'g> {
             .collect()
     }
 
-    /// The right-hand sides of the [balance](Equations::balance) as they are written, in the graph `page`; none
-    /// for those that are not polynomials, which are written [unchanged](Equations::right_hand_side).
+    /// The right-hand sides of the [balance](Equations::balance) in their written form, in the graph `page`;
+    /// none for right-hand sides that are not polynomials, which are written
+    /// [unchanged](Equations::right_hand_side).
     pub fn written<'p>(&self, page: &'p Graph) -> Vec<Option<Expr<'p>>> {
         sums_of_products(&self.system, self.right_hand_side(), &self.system.quasi_velocities, page)
     }
@@ -43,8 +44,8 @@ pub(crate) fn expanded<'g>(
     written.map_or_else(|| expression.display(style), |written| written.display(style))
 }
 
-/// Several expressions, each expanded in this way, in the graph `page` with symbols in book order; `None` for
-/// those that are not polynomials.
+/// Several expressions, each expanded into a sum of products, in the graph `page` with symbols in book order;
+/// `None` for those that are not polynomials.
 pub(crate) fn sums_of_products<'g, 'p>(
     system: &System<'g>,
     expressions: &[Expr<'g>],

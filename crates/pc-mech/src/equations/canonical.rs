@@ -112,8 +112,8 @@ impl<'g> System<'g> {
     }
 }
 
-/// The solution η of M η = y − p_0, for each small block of M by cofactors over the determinant: expanded, the
-/// expressions are as in a book, and regular where M is.
+/// The solution η of M η = y − p_0, found for each small block of M from cofactors over the determinant: once
+/// expanded, the expressions look as in a book, and they are regular where M is.
 fn solution<'g>(
     graph: &'g Graph,
     mass: &Matrix<Expr<'g>>,
@@ -139,7 +139,7 @@ fn solution<'g>(
     eta
 }
 
-/// The inverse of a symmetric matrix as cofactors over the determinant, both collected.
+/// The inverse of a symmetric matrix as cofactors over the determinant, with the terms of both collected.
 fn cofactors<'g>(
     graph: &'g Graph,
     matrix: &Matrix<Expr<'g>>,
@@ -184,15 +184,15 @@ fn impulse<'g>(momenta: &[Expr<'g>], at_rest: &[Expr<'g>]) -> Vec<Expr<'g>> {
 }
 
 impl<'g> Canonical<'g> {
-    /// The system from which they were derived.
+    /// The system from which the equations were derived.
     pub fn system(&self) -> &System<'g> {
         &self.system
     }
 
     /// Whether the solution η of y = ∂L/∂η is an expression, as it is where L is quadratic in η.
     ///
-    /// Otherwise the expressions of these equations contain the symbols η besides (t, x, y), and hold where y = ∂L/∂η;
-    /// [compiled](Canonical::compile_for), they solve that by Newton's method.
+    /// Otherwise the expressions of these equations contain the symbols η as well as (t, x, y), and hold where y =
+    /// ∂L/∂η; once [compiled](Canonical::compile_for), the equations solve y = ∂L/∂η by Newton's method.
     pub fn is_closed(&self) -> bool {
         matches!(self.legendre.inverse, Inverse::Closed { .. })
     }
@@ -249,8 +249,8 @@ impl<'g> Canonical<'g> {
     }
 
     /// The Hamiltonian H(t, x, y), or y_s η_s − L where the equations are not [closed](Canonical::is_closed):
-    /// the derivatives of that with respect to t, x and y at fixed η are those of H, since ∂/∂η_s (y_r η_r − L)
-    /// = 0 at the solution.
+    /// the derivatives of y_s η_s − L with respect to t, x and y at fixed η are those of H, since ∂/∂η_s (y_r
+    /// η_r − L) = 0 at the solution.
     pub fn hamiltonian(&self) -> Expr<'g> {
         self.hamiltonian
     }
@@ -284,21 +284,22 @@ impl<'g> Canonical<'g> {
             .collect()
     }
 
-    /// The right-hand sides of the [balance](Canonical::balance) as they are written, in the graph `page`; none
-    /// for those that are not polynomials, which are written [unchanged](Canonical::right_hand_side).
+    /// The right-hand sides of the [balance](Canonical::balance) in their written form, in the graph `page`;
+    /// none for right-hand sides that are not polynomials, which are written
+    /// [unchanged](Canonical::right_hand_side).
     pub fn written<'p>(&self, page: &'p Graph) -> Vec<Option<Expr<'p>>> {
         sums_of_products(&self.system, &self.right, &self.momenta, page)
     }
 
-    /// Compiles the equations as a vector field of the state (x, y); integrals, energy and outputs are observed as
-    /// those of [`Equations`](crate::Equations) are.
+    /// Compiles the equations as a vector field of the state (x, y); integrals, energy and outputs are observed,
+    /// as they are for [`Equations`](crate::Equations).
     ///
     /// Where they are not [closed](Canonical::is_closed), each evaluation solves y = ∂L/∂η for η to rounding accuracy,
     /// from the same [guess](Canonical::with_guess), so that the result depends on (t, x, y) only; if the iteration
-    /// from the guess does not converge, it starts from the last solution. It fails, recoverably, with
-    /// [`EvaluationError::LegendreNotSolved`](crate::EvaluationError::LegendreNotSolved) where it converges from
-    /// neither, and with [`EvaluationError::SingularMassMatrix`](crate::EvaluationError::SingularMassMatrix) where a
-    /// pivot of M = ∂²L/∂η∂η vanishes.
+    /// from the guess does not converge, it starts from the last solution. The evaluation fails, recoverably, with
+    /// [`EvaluationError::LegendreNotSolved`](crate::EvaluationError::LegendreNotSolved) where the iteration converges
+    /// from neither, and with [`EvaluationError::SingularMassMatrix`](crate::EvaluationError::SingularMassMatrix)
+    /// where a pivot of M = ∂²L/∂η∂η vanishes.
     ///
     /// # Errors
     /// As for [`Equations::compile_for`](crate::Equations::compile_for).

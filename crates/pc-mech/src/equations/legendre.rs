@@ -9,15 +9,14 @@ use crate::system::system::System;
 /// The Legendre transform of L.
 #[derive(Clone, Debug)]
 pub(crate) struct Legendre<'g> {
-    /// The k × k matrix M = ∂²L/∂η∂η, in terms of (t, x) if L is quadratic, else of (t,
-    /// x, η).
+    /// The k × k matrix M = ∂²L/∂η∂η, in terms of (t, x) if L is quadratic, and of (t, x, η) otherwise.
     pub(crate) mass: Matrix<Expr<'g>>,
     /// ∂L/∂η in (t, x, η), length k.
     pub(crate) momenta: Vec<Expr<'g>>,
     pub(crate) inverse: Inverse<'g>,
 }
 
-/// How y = ∂L/∂η is solved for η.
+/// The way in which y = ∂L/∂η is solved for η.
 #[derive(Clone, Debug)]
 pub(crate) enum Inverse<'g> {
     /// By M η = y − p_0, for L = ½ M_rs η_r η_s + p_0s η_s + L_0.

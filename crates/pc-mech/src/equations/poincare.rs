@@ -15,7 +15,7 @@ pub struct Equations<'g> {
     pub(crate) system: System<'g>,
     velocities: Vec<Expr<'g>>,
     energy: Expr<'g>,
-    /// The matrices M and r; for a large tree they are derived on first use.
+    /// The matrices M and r; for a large tree they are derived when first used.
     matrices: OnceCell<Matrices<'g>>,
 }
 
@@ -27,7 +27,8 @@ struct Matrices<'g> {
 }
 
 impl<'g> Matrices<'g> {
-    /// Matrices of undefined entries, which are reported on use, for a derivation that failed.
+    /// Matrices of undefined entries, for a derivation that failed; the failure is reported when they are
+    /// used.
     fn undefined(size: usize) -> Matrices<'g> {
         let undefined = Expr::ONE / Expr::ZERO;
         Matrices { mass: Matrix::from_fn(size, size, |_, _| undefined), right: vec![undefined; size] }
@@ -180,7 +181,8 @@ impl<'g> Equations<'g> {
         self.energy
     }
 
-    /// The same equations with some symbols in integrals and outputs replaced, such as those of reactions.
+    /// The same equations with some symbols in integrals and outputs replaced, such as the symbols of
+    /// reactions.
     #[must_use]
     pub fn with_observed(&self, known: &[(Expr<'g>, Expr<'g>)]) -> Equations<'g> {
         Equations { system: self.system.with_observed(known), ..self.clone() }

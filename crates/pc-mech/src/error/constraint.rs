@@ -22,7 +22,8 @@ pub enum ConstraintError {
         /// Number k of quasi-velocities.
         quasi_velocities: usize,
     },
-    /// A constraint that restricts no velocity, or none that the constraints before it leave free.
+    /// A constraint that restricts no velocity, or only velocities that the constraints before it have
+    /// already restricted.
     #[error("the constraint `{constraint}` restricts no velocity that those before it leave free")]
     Dependent {
         /// Its name.
@@ -57,8 +58,8 @@ pub enum ConstraintError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
-    /// A constraint that was dropped because it followed from the others, but does not do so
-    /// everywhere.
+    /// A constraint that was dropped because it seemed to follow from the others, but does not follow from
+    /// them everywhere.
     #[error(
         "the constraint `{constraint}`, which followed from the others, no longer does at t = {t}{}",
         listed(state)
@@ -71,7 +72,8 @@ pub enum ConstraintError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
-    /// A constraint whose condition on velocities jumps along the motion, and with it the velocities.
+    /// A constraint whose condition on velocities jumps along the motion, so that the velocities jump as
+    /// well.
     #[error("the condition of `{constraint}` on velocities jumps at {}: velocities jump there", at(place))]
     Jumps {
         /// Its name.

@@ -33,14 +33,14 @@ pub enum EvaluationError {
     LegendreNotSolved {
         /// |y − ∂L/∂η|
         residual: f64,
-        /// Number of steps made.
+        /// Number of steps taken.
         iterations: usize,
         /// Time.
         t: f64,
         /// Names and values of the state (x, y).
         state: Vec<(String, f64)>,
     },
-    /// A derivative that was not [compiled](crate::CompileOptions).
+    /// A derivative was requested that was not [compiled](crate::CompileOptions).
     #[error("the motion was compiled without its {what}")]
     NotCompiled {
         /// The derivative.

@@ -1,4 +1,4 @@
-//! Errors of generalised forces, above all of external ones.
+//! Errors of generalised forces, above all of external forces.
 
 use crate::error::lists::{listed, quoted};
 

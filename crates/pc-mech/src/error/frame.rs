@@ -12,7 +12,7 @@ pub enum FrameError {
         /// The quasi-velocity, or velocity of a coordinate.
         velocity: String,
     },
-    /// A frame whose b or b_0 jumps, and with it a quasi-velocity or a velocity.
+    /// A frame whose b or b_0 jumps, so that a quasi-velocity or a velocity jumps as well.
     #[error("the frame jumps by {} at {}: velocities or quasi-velocities jump there", approximately(*size), at(place))]
     Jumps {
         /// The size of the jump of an entry.
@@ -28,8 +28,8 @@ pub enum FrameError {
         /// The state.
         state: String,
     },
-    /// Definitions that determine the velocities before and after a state of the motion,
-    /// but not there.
+    /// Definitions that determine the velocities before and after a state of the motion, but not at that
+    /// state.
     #[error(
         "between t = {from} and t = {to} the quasi-velocities cease to determine the velocities, or these the \
          quasi-velocities: the state does not say how the motion continues there"

@@ -6,7 +6,7 @@ use crate::error::lists::{listed, quoted};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum IntegralError {
-    /// An integral to be kept that the system does not have.
+    /// An integral that is to be kept but does not exist in the system.
     #[error("`{name}` is not an integral of the system; there are {}", quoted(known))]
     Unknown {
         /// The requested name.
@@ -21,10 +21,10 @@ pub enum IntegralError {
         name: String,
         /// The time at which it was found to change.
         t: f64,
-        /// Its rate of change.
+        /// The rate of change of the function.
         rate: f64,
     },
-    /// A function to be kept that may jump, and is constant only between jumps.
+    /// A function to be kept that may jump, and so is constant only between jumps.
     #[error("`{name}` cannot be kept: it may jump along the motion, to another value than that at the start")]
     Jumps {
         /// The integral.

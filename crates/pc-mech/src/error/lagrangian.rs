@@ -42,7 +42,7 @@ pub enum LagrangianError {
         /// Number k of quasi-velocities.
         quasi_velocities: usize,
     },
-    /// L jumps on the path of the motion, so that its force there is an impulse.
+    /// L jumps on the path of the motion, so that the force derived from L is an impulse there.
     #[error("the Lagrangian jumps by {} at {}: its force there is an impulse", approximately(*size), at(place))]
     Jumps {
         /// The size of the jump.

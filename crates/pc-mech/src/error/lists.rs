@@ -10,7 +10,7 @@ pub(super) fn listed(values: &[(String, f64)]) -> String {
     values.iter().map(|(name, value)| format!(", {name} = {}", readable(*value))).collect()
 }
 
-/// The text for the position of a jump, which was found approximately.
+/// The text for the position of a jump, when the position was found approximately.
 pub(super) fn at(place: &[(String, f64)]) -> String {
     let pair = |(name, value): &(String, f64)| format!("{name} = {}", approximately(*value));
     place.iter().map(pair).collect::<Vec<_>>().join(", ")

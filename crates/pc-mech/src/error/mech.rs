@@ -57,15 +57,14 @@ pub enum MechError {
 }
 
 impl MechError {
-    /// Whether a closed H(t, x, y) was requested where [none is
-    /// found](LagrangianError::NotQuadratic).
+    /// Whether a closed H(t, x, y) was requested where [there is none](LagrangianError::NotQuadratic).
     pub fn is_not_quadratic(&self) -> bool {
         matches!(self, MechError::Lagrangian(LagrangianError::NotQuadratic { .. }))
     }
 
-    /// Whether Lagrange's equations were requested in coordinates that are not independent: their
-    /// number differs from that of the quasi-velocities, or these do not determine their
-    /// velocities.
+    /// Whether Lagrange's equations were requested in coordinates that are not independent: their number
+    /// differs from that of the quasi-velocities, or the quasi-velocities do not determine the velocities of
+    /// the coordinates.
     pub fn is_of_dependent_coordinates(&self) -> bool {
         matches!(
             self,

@@ -18,10 +18,10 @@ pub enum TreeError {
         /// Its parent.
         parent: String,
     },
-    /// Bodies that are each other's parents in a circle.
+    /// Bodies whose parents form a circle.
     #[error("bodies hang on each other in a circle: {}", bodies.join(" on "))]
     Circle {
-        /// Their names, each before its parent.
+        /// The names of the bodies, each before its parent.
         bodies: Vec<String>,
     },
     /// An axis without a direction.

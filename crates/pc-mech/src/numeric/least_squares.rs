@@ -5,7 +5,7 @@ use pc_algebra::Matrix;
 use crate::error::MechError;
 use crate::numeric::singular_values::SingularValues;
 
-/// The equations A x = b for an m × n matrix A = U Σ Vᵀ, solved by its singular values.
+/// The equations A x = b for an m × n matrix A = U Σ Vᵀ, solved by means of the singular values of A.
 ///
 /// ```
 /// use pc_mech::{LeastSquares, Matrix};
@@ -43,8 +43,8 @@ impl LeastSquares {
         }
     }
 
-    /// The shortest x among those with the smallest |A x − b|, where singular values up to `tolerance` times
-    /// the largest count as zero; b has length m.
+    /// The shortest of the vectors x with the smallest |A x − b|, where singular values up to `tolerance`
+    /// times the largest count as zero; b has length m.
     pub fn shortest(&self, b: &[f64], tolerance: f64) -> Vec<f64> {
         let rank = self.rank(tolerance);
         self.combined(b, |i, value| if i < rank { value.recip() } else { 0.0 })

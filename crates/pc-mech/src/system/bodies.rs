@@ -2,7 +2,7 @@
 //! to the forces.
 //!
 //! Read `moving` (how a point moves with a frame, and the contribution of a body), `particle` and
-//! `rigid_body`, then `body`, either of them. `velocity` is what a system stores about its bodies.
+//! `rigid_body`, then `body`, which is either of them. `velocity` is what a system stores about its bodies.
 
 pub(crate) mod body;
 pub(crate) mod moving;

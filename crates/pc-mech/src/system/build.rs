@@ -32,7 +32,8 @@ impl<'g> SystemBuilder<'g> {
     /// missing, contradict the frame, or violate Jacobi's identity; [`FrameError::OfVelocities`] for a frame that contains
     /// velocities; [`LagrangianError::SignalInMomentum`]; [`LagrangianError::Jumps`], [`LagrangianError::MomentumJumps`] and
     /// [`FrameError::Jumps`] for anything that would cause an impulse; [`FrameError::OfState`] for a frame that depends on
-    /// first-order states, or a body whose position does; [`BodyError::OfVelocities`](crate::BodyError::OfVelocities) and
+    /// first-order states, or a body whose position depends on them;
+    /// [`BodyError::OfVelocities`](crate::BodyError::OfVelocities) and
     /// [`BodyError::AngularVelocityNotAffine`](crate::BodyError::AngularVelocityNotAffine) of bodies;
     /// [`MatrixError::NotSkew`](crate::MatrixError::NotSkew) and
     /// [`ForceError::NotAQuasiVelocity`](crate::ForceError::NotAQuasiVelocity) of forces; [`MechError::Expr`] for an
@@ -104,7 +105,7 @@ impl<'g> SystemBuilder<'g> {
         Ok(frame)
     }
 
-    /// The structure coefficients c_rs^m (5), as given or from the frame.
+    /// The structure coefficients c_rs^m (5), as given or as derived from the frame.
     fn structure_of(&self, frame: &Frame<'g>) -> Result<StructureCoefficients<'g>, MechError> {
         let near = self.near_parameters();
         match &self.structure {
@@ -177,8 +178,8 @@ impl<'g> SystemBuilder<'g> {
         Ok(())
     }
 
-    /// Checks that neither momenta nor the frame depend on a function of time given by a table, since its
-    /// rates would then be needed.
+    /// Checks that neither the momenta nor the frame depend on a function of time given by a table, since the
+    /// rates of that function would then be needed.
     fn check_signals(
         &self,
         frame: &Frame<'g>,
@@ -199,7 +200,7 @@ impl<'g> SystemBuilder<'g> {
 }
 
 /// # Errors
-/// [`ShapeError`](crate::ShapeError) if there are not three.
+/// [`ShapeError`](crate::ShapeError) if there are not three components.
 fn three_components<'g>(acceleration: &[Expr<'g>]) -> Result<[Expr<'g>; 3], MechError> {
     shape("the acceleration of gravity", acceleration.len(), 3)?;
     Ok(std::array::from_fn(|i| acceleration[i]))
@@ -222,8 +223,8 @@ fn check_named<'g>(tree: &Tree<'g>, frame: &Frame<'g>, eta: &[Expr<'g>]) -> Resu
     Ok(())
 }
 
-/// Checks that b and b_0 are functions of time and coordinates: a quasi-velocity or velocity in them would be
-/// treated as a constant.
+/// Checks that b and b_0 are functions of time and coordinates: a quasi-velocity or velocity in b or b_0
+/// would be treated as a constant.
 ///
 /// # Errors
 /// [`FrameError::OfVelocities`] with the first velocity that occurs.

@@ -95,7 +95,7 @@ impl<'g> SystemBuilder<'g> {
     }
 
     /// Declares a symbol to be a parameter whose value is a function of time, with its initial value. A function that
-    /// depends on it does not count as an integral. The function itself is given to a
+    /// depends on this parameter does not count as an integral. The function itself is given to a
     /// [`Motion`](crate::Motion::driven_by) as a [table](crate::Signals).
     #[must_use]
     pub fn signal(mut self, symbol: Expr<'g>, value: f64) -> Self {
@@ -103,15 +103,15 @@ impl<'g> SystemBuilder<'g> {
         self.parameter(symbol, value)
     }
 
-    /// Names the coordinates x_1..x_n; there are none for equations on an algebra alone.
+    /// Names the coordinates x_1..x_n; equations on an algebra alone have no coordinates.
     #[must_use]
     pub fn coordinates<S: AsRef<str>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.coordinates = names.into_iter().map(|name| self.graph.symbol(name.as_ref())).collect();
         self
     }
 
-    /// Names the quasi-velocities η_1..η_k; without this call they are the velocities, `x'` for the coordinate
-    /// `x`.
+    /// Names the quasi-velocities η_1..η_k; without this call they are the velocities of the coordinates, `x'`
+    /// for the coordinate `x`.
     #[must_use]
     pub fn quasi_velocities<S: AsRef<str>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.quasi_velocities =
@@ -120,9 +120,9 @@ impl<'g> SystemBuilder<'g> {
     }
 
     /// Declares a symbol to be a first-order state z with the rate ż(t, x, η, z), such as the current in a motor or the
-    /// integral of a controller's error. It is integrated with the motion after the quasi-velocities; L, forces,
-    /// integrals and outputs may depend on it, but the frame may not. With p_s = ∂L/∂η_s, dp_s/dt then has the term ż
-    /// ∂p_s/∂z.
+    /// integral of a controller's error. The state z is integrated with the motion and comes after the
+    /// quasi-velocities; L, forces, integrals and outputs may depend on it, but the frame may not. With p_s = ∂L/∂η_s,
+    /// dp_s/dt then has the term ż ∂p_s/∂z.
     ///
     /// ```
     /// # use pc_mech::{Graph, System, VectorField};
@@ -163,31 +163,33 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Gives the frame itself, in the named coordinates and the time symbol `t` of the graph: one from
-    /// [definitions](Frame::from_definitions) η = a ẋ + a_0 (2), or of a [group](crate::LieGroup::left_frame).
+    /// Gives the frame itself, in the named coordinates and the time symbol `t` of the graph: for example one
+    /// made from [definitions](Frame::from_definitions) η = a ẋ + a_0 (2), or that of a
+    /// [group](crate::LieGroup::left_frame).
     #[must_use]
     pub fn frame(mut self, frame: Frame<'g>) -> Self {
         self.kinematics = Kinematics::Frame(Box::new(frame));
         self
     }
 
-    /// Gives the brackets \[X_r, X_s\] = c_rs^m X_m (5) of a stationary frame: they are needed where b does not
-    /// determine them (rank b < k, or no coordinates), and are checked against the frame otherwise.
+    /// Gives the brackets \[X_r, X_s\] = c_rs^m X_m (5) of a stationary frame. The brackets are needed where b
+    /// does not determine them (rank b < k, or no coordinates); otherwise they are checked against the frame.
     #[must_use]
     pub fn algebra(self, algebra: &LieAlgebra) -> Self {
         self.structure(algebra.structure_coefficients())
     }
 
-    /// Gives all structure coefficients (5), c_0s^m included; needed and checked as those of an
-    /// [algebra](SystemBuilder::algebra). They may contain parameters, time and coordinates.
+    /// Gives all structure coefficients (5), c_0s^m included. The coefficients are needed and checked in the
+    /// same cases as those of an [algebra](SystemBuilder::algebra), and may contain parameters, time and
+    /// coordinates.
     #[must_use]
     pub fn structure(mut self, structure: StructureCoefficients<'g>) -> Self {
         self.structure = Some(structure);
         self
     }
 
-    /// Gives values of symbols near which the system is regular, such as the initial values of a motion; they are used
-    /// where an identity can only be tested numerically.
+    /// Gives values of symbols near which the system is regular, such as the initial values of a motion; these values
+    /// are used where an identity can only be tested numerically.
     #[must_use]
     pub fn near(mut self, values: impl IntoIterator<Item = (Expr<'g>, f64)>) -> Self {
         self.near.centre.extend(values);
@@ -238,7 +240,7 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Adds a point mass: its kinetic energy, and the force on it.
+    /// Adds a point mass, with its kinetic energy and the force on it.
     #[must_use]
     pub fn particle(
         mut self,
@@ -248,7 +250,7 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Adds a rigid body: its kinetic energy, and the force and torque on it.
+    /// Adds a rigid body, with its kinetic energy and the force and torque on it.
     #[must_use]
     pub fn rigid_body(
         mut self,
@@ -259,16 +261,16 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Adds bodies joined by joints: their kinetic energy, their weight, and the forces on them. The
-    /// coordinates and quasi-velocities of the [`Tree`] are among those of the system, and their velocities
-    /// belong to its [kinematics](SystemBuilder::kinematics).
+    /// Adds bodies joined by joints, with their kinetic energy, their weight, and the forces on them. The
+    /// coordinates and quasi-velocities of the [`Tree`] are among those of the system, and the velocities of
+    /// these coordinates belong to its [kinematics](SystemBuilder::kinematics).
     #[must_use]
     pub fn tree(mut self, tree: Tree<'g>) -> Self {
         self.tree = Some(tree);
         self
     }
 
-    /// Lets gravity with the acceleration g(t), along the axes of their positions, act on all bodies: each adds
+    /// Lets gravity act on all bodies, with the acceleration g(t) along the axes of their positions: each adds
     /// m g · r to L, where r is the position of its mass centre.
     ///
     /// ```
@@ -293,7 +295,7 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Adds generalised forces Q_1..Q_k (8): their power is Q_s η_s.
+    /// Adds generalised forces Q_1..Q_k (8), whose power is Q_s η_s.
     #[must_use]
     pub fn forces<I: IntoIterator<Item = Expr<'g>>>(
         mut self,
@@ -304,7 +306,7 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Adds forces F_1..F_n on the coordinates, with the virtual work F_i δx_i: Q_s = b_is F_i (8).
+    /// Adds forces F_1..F_n on the coordinates, whose virtual work is F_i δx_i: Q_s = b_is F_i (8).
     #[must_use]
     pub fn force_on_coordinates<I: IntoIterator<Item = Expr<'g>>>(
         mut self,
@@ -333,9 +335,10 @@ impl<'g> SystemBuilder<'g> {
         self
     }
 
-    /// Declares that forces computed outside, such as those of a controller, act on quasi-velocities, given by their
-    /// names: Q_s has a further term, a symbol, whose value an [`ExternalForce`](crate::ExternalForce) gives in the
-    /// order of declaration when the equations are [compiled with it](crate::Equations::compile_forced).
+    /// Declares that forces that the caller computes, such as those of a controller, act on the quasi-velocities
+    /// with these names. Each such Q_s gets a further term, a symbol; an [`ExternalForce`](crate::ExternalForce)
+    /// with which the equations are [compiled](crate::Equations::compile_forced) gives the values of the symbols,
+    /// in the order of declaration.
     #[must_use]
     pub fn external_force<S: Into<String>>(mut self, quasi_velocities: impl IntoIterator<Item = S>) -> Self {
         for name in quasi_velocities.into_iter().map(Into::into) {

@@ -1,7 +1,8 @@
 //! Checks that energies and frames cause no impulses.
 //!
-//! Where L jumps with the position, or ∂L/∂η or the frame with anything but velocities, d/dt ∂L/∂η or X_s L in (9) is an impulse.
-//! Derivatives of the pieces do not show it: the motion would pass through as if there were no jump.
+//! Where L jumps with the position, or where ∂L/∂η or the frame jumps with anything but the velocities, d/dt ∂L/∂η or
+//! X_s L in (9) is an impulse. The derivatives of the pieces do not show the impulse: the motion would pass through as
+//! if there were no jump.
 
 use pc_algebra::{Frame, Jump, Neighbourhood};
 use pc_expr::Expr;
@@ -19,7 +20,8 @@ impl<'g> SystemBuilder<'g> {
         near
     }
 
-    /// Checks that neither L, as a function of the position, nor momenta nor the frame jump.
+    /// Checks that L, as a function of the position, does not jump, and that neither the momenta nor the
+    /// frame jump.
     ///
     /// # Errors
     /// [`LagrangianError::Jumps`], [`LagrangianError::MomentumJumps`], [`FrameError::Jumps`]

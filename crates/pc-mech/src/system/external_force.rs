@@ -1,4 +1,4 @@
-//! Forces that are computed outside: opaque functions of time and state.
+//! External forces, which the caller computes: opaque functions of time and state.
 
 use pc_algebra::Frame;
 use pc_expr::{Expr, Failure};
@@ -8,9 +8,9 @@ use crate::error::{ForceError, MechError};
 /// Forces Q_s (8) on the quasi-velocities that were [declared](crate::SystemBuilder::external_force) to have an
 /// external force.
 ///
-/// Implemented by closures `FnMut(t, y, q)` that write all q; a force that may fail, or whose derivatives are
-/// known, implements the trait itself. The state y is that of the motion: (x, η), or coordinates and momenta of
-/// the [canonical](crate::Canonical) equations.
+/// Closures `FnMut(t, y, q)` that write all q implement this trait; a force that may fail, or whose derivatives
+/// are known, needs a type of its own. The state y is the state of the motion: (x, η), or the coordinates and
+/// momenta of the [canonical](crate::Canonical) equations.
 pub trait ExternalForce {
     /// Writes the forces at (t, y) to `q`, one for each quasi-velocity declared, in the order of declaration.
     ///
@@ -18,13 +18,13 @@ pub trait ExternalForce {
     /// A [`Failure`], which is recoverable if an integrator should try a smaller step.
     fn force(&mut self, t: f64, y: &[f64], q: &mut [f64]) -> Result<(), Failure>;
 
-    /// Writes the derivatives ∂q_i/∂y_j of the e forces to `dq[i + j * e]`: every entry.
+    /// Writes the derivatives ∂q_i/∂y_j of the e forces to `dq[i + j * e]`; every entry has to be written.
     ///
-    /// By default these are difference quotients (q(y + h_j e_j) − q(y))/h_j of the forces alone, with h_j = √ε
-    /// max(1, |y_j|), ε the unit of rounding; the rest of the Jacobian stays exact.
+    /// By default the derivatives are difference quotients (q(y + h_j e_j) − q(y))/h_j of the forces alone,
+    /// with h_j = √ε max(1, |y_j|), ε the unit of rounding; the rest of the Jacobian stays exact.
     ///
     /// # Errors
-    /// As [`force`](ExternalForce::force).
+    /// As for [`force`](ExternalForce::force).
     fn jacobian(&mut self, t: f64, y: &[f64], dq: &mut [f64]) -> Result<(), Failure> {
         difference_quotients(self, (t, y), dq, &mut Vec::new())
     }
@@ -34,7 +34,7 @@ pub trait ExternalForce {
 /// `room` is workspace.
 ///
 /// # Errors
-/// As [`ExternalForce::force`].
+/// As for [`ExternalForce::force`].
 pub fn difference_quotients<F: ExternalForce + ?Sized>(
     force: &mut F,
     (t, y): (f64, &[f64]),

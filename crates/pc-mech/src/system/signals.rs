@@ -5,11 +5,11 @@ use std::sync::Arc;
 /// How a table is interpolated between its times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
-    /// By straight lines.
+    /// By straight lines between neighbouring values.
     Linear,
     /// By the cubic spline with continuous second derivative whose third derivative is also continuous at the
-    /// second and the last but one of the times (C. de Boor, *A Practical Guide to Splines*, ch. IV:
-    /// not-a-knot).
+    /// second and the last but one of the times of the table (C. de Boor, *A Practical Guide to Splines*, ch.
+    /// IV: not-a-knot).
     Cubic,
     /// By the last preceding value, even after the last time.
     Hold,
@@ -47,11 +47,11 @@ pub enum TableError {
     /// Times that do not increase.
     #[error("the times of a table must increase: {time} follows {before}")]
     NotRising {
-        /// The index of the later one, counted from 0.
+        /// The index of the later of the two times, counted from 0.
         place: usize,
-        /// The earlier one.
+        /// The earlier of the two times.
         before: f64,
-        /// The later one.
+        /// The later of the two times.
         time: f64,
     },
     /// A time or a value that is not finite.
@@ -74,7 +74,7 @@ pub struct OutsideTable {
     pub t: f64,
     /// The first time of the table.
     pub from: f64,
-    /// The last one.
+    /// The last time of the table.
     pub to: f64,
 }
 
@@ -169,8 +169,8 @@ impl Table {
     }
 }
 
-/// The slopes of the spline (not-a-knot); for three points, those of the parabola through them, and for two,
-/// those of the line.
+/// The slopes of the spline (not-a-knot); for three points, those of the parabola through the points, and for
+/// two, those of the straight line.
 fn spline(x: &[f64], u: &[f64]) -> Vec<f64> {
     let n = x.len();
     let h: Vec<f64> = x.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -222,7 +222,7 @@ pub struct Signals {
 #[derive(Clone, Debug)]
 struct Signal {
     name: String,
-    /// Its index among the parameters.
+    /// The index of the input among the parameters.
     place: usize,
     table: Arc<Table>,
 }
@@ -271,8 +271,8 @@ impl Signals {
         before.is_some_and(jumps)
     }
 
-    /// The derivative u̇ of the input with this index among the parameters; at a break, the one on the side
-    /// that was [entered](Signals::enter); zero if the input has no table.
+    /// The derivative u̇ of the input with this index among the parameters; at a break, the derivative on the
+    /// side that was [entered](Signals::enter); zero if the input has no table.
     pub(crate) fn rate(&self, place: usize, t: f64) -> f64 {
         let entered = self.between.filter(|&(from, to)| (from..=to).contains(&t));
         let (from, _) =
@@ -287,8 +287,8 @@ impl Signals {
         (from, self.breaks.get(next).copied().unwrap_or(f64::INFINITY))
     }
 
-    /// Writes the values at t into the parameters; at a jump, those on the side of the interval that was
-    /// [entered](Signals::enter), if t is one of its ends. Returns whether one has changed.
+    /// Writes the values at t into the parameters; at a jump, the values on the side of the interval that was
+    /// [entered](Signals::enter), if t is one of its ends. Returns whether any value has changed.
     ///
     /// # Errors
     /// [`OutsideTable`]
@@ -300,7 +300,7 @@ impl Signals {
         })
     }
 
-    /// As [`read`](Signals::read), but at a jump it always writes the values after it.
+    /// Like [`read`](Signals::read), but at a jump it always writes the values after the jump.
     ///
     /// # Errors
     /// [`OutsideTable`]

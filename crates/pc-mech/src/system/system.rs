@@ -67,7 +67,8 @@ impl<'g> System<'g> {
         self.state_with(&self.quasi_velocities)
     }
 
-    /// The symbols of the state with other symbols, such as momenta, in place of η: x, then these, then z.
+    /// The symbols of the state with other symbols, such as momenta, in place of η: x, then the other
+    /// symbols, then z.
     pub fn state_with(&self, moving: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let states = self.states.iter().map(|(symbol, _)| symbol);
         self.frame.coordinates().iter().chain(moving).chain(states).copied().collect()
@@ -92,7 +93,7 @@ impl<'g> System<'g> {
     }
 
     /// The quaternions of its joints, each of four coordinates with |q| = 1. The equations keep |q| constant, and
-    /// motions are [projected](pc_expr::VectorField::project) to it.
+    /// motions are [projected](pc_expr::VectorField::project) onto |q| = 1.
     pub fn unit_quaternions(&self) -> &[[Expr<'g>; 4]] {
         &self.unit_quaternions
     }
@@ -103,8 +104,8 @@ impl<'g> System<'g> {
         self.tree().filter(|tree| tree.is_large())
     }
 
-    /// The [acceleration of gravity](crate::SystemBuilder::gravity) of its bodies, along the axes of the world; in a plane the last
-    /// component is zero, and without gravity all are.
+    /// The [acceleration of gravity](crate::SystemBuilder::gravity) of its bodies, along the axes of the world; in a
+    /// plane the last component is zero, and without gravity all components are.
     pub fn gravity(&self) -> [Expr<'g>; 3] {
         self.gravity
     }
@@ -130,7 +131,7 @@ impl<'g> System<'g> {
         self.lagrangian
     }
 
-    /// The generalised forces Q_1..Q_k (8), without those that follow from L.
+    /// The generalised forces Q_1..Q_k (8), without the forces derived from L.
     pub fn forces(&self) -> &[Expr<'g>] {
         &self.forces
     }
@@ -195,7 +196,7 @@ impl<'g> System<'g> {
         self.quasi_velocities.iter().copied().chain(parameters).collect()
     }
 
-    /// The symbol with that name, preceded by `mark` as many times as are needed to distinguish it from the
+    /// The symbol with that name, preceded by `mark` as many times as it takes to distinguish it from the
     /// symbols of the system.
     pub(crate) fn unused(&self, name: String, mark: &str) -> Expr<'g> {
         let parameters = self.parameters.iter().map(|(symbol, _)| symbol);
@@ -262,10 +263,10 @@ impl<'g> System<'g> {
         }
     }
 
-    /// The same system with other values of its parameters, in the order of declaration.
+    /// The same system with other values for its parameters, in the order of declaration.
     ///
     /// # Panics
-    /// If there are not as many values as parameters.
+    /// If the number of values is not the number of parameters.
     #[must_use]
     pub fn with_parameter_values(&self, values: &[f64]) -> System<'g> {
         assert_eq!(values.len(), self.parameters.len(), "values of the parameters");
@@ -279,13 +280,14 @@ impl<'g> System<'g> {
         System { integrals: Vec::new(), outputs: Vec::new(), ..self.clone() }
     }
 
-    /// The same system with the integrals and outputs of another one with the same state.
+    /// The same system with the integrals and outputs of another system that has the same state.
     #[must_use]
     pub fn observing(&self, other: &System<'g>) -> System<'g> {
         System { integrals: other.integrals.clone(), outputs: other.outputs.clone(), ..self.clone() }
     }
 
-    /// The same system with some symbols in its integrals and outputs replaced, such as those of reactions.
+    /// The same system with some symbols in its integrals and outputs replaced, such as the symbols of
+    /// reactions.
     #[must_use]
     pub fn with_observed(&self, known: &[(Expr<'g>, Expr<'g>)]) -> System<'g> {
         let known = self.graph().substitution(known);
@@ -305,7 +307,7 @@ impl<'g> System<'g> {
     /// The same system with further generalised forces, one for each quasi-velocity.
     ///
     /// # Errors
-    /// [`ShapeError`](crate::ShapeError) if there are more or fewer of them.
+    /// [`ShapeError`](crate::ShapeError) if the number of forces differs from that of the quasi-velocities.
     pub fn with_added_forces(&self, more: &[Expr<'g>]) -> Result<System<'g>, MechError> {
         shape("the list of forces", more.len(), self.forces.len())?;
         Ok(System {

@@ -13,7 +13,7 @@ impl<'g> System<'g> {
     ///
     /// # Errors
     /// [`LagrangianError::RedundantCoordinates`] if there are not as many quasi-velocities as coordinates, and
-    /// [`MechError::Algebra`] if these do not determine them.
+    /// [`MechError::Algebra`] if the quasi-velocities do not determine the velocities.
     pub fn in_velocities(&self) -> Result<System<'g>, MechError> {
         let graph = self.graph();
         let (coordinates, k) = (self.frame.coordinates(), self.quasi_velocities.len());

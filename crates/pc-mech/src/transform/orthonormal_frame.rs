@@ -11,8 +11,8 @@ use crate::transform::quasi_velocities::QuasiVelocityChange;
 
 impl<'g> System<'g> {
     /// The same system in quasi-velocities that are orthonormal in the kinetic metric, η' = D^½ Lᵀ η with M = L D Lᵀ,
-    /// so that T = ½ η'_s η'_s up to parts of lower degree. One is made for each of the `names`, out of the first
-    /// quasi-velocities; the others, such as those that constraints keep at zero, are unchanged.
+    /// so that T = ½ η'_s η'_s up to parts of lower degree. One quasi-velocity η'_s is made for each of the `names`,
+    /// out of the first quasi-velocities; the others, such as those that constraints keep at zero, are unchanged.
     ///
     /// # Errors
     /// [`LagrangianError::NotQuadratic`] unless L is quadratic in η, with a metric independent of η;

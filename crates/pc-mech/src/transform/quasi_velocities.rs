@@ -40,7 +40,7 @@ impl<'g> QuasiVelocityChange<'g> {
 
 impl<'g> System<'g> {
     /// The same system in the quasi-velocities η' = A η + A_0, given by their names and their expressions in the old
-    /// ones. A name may also be that of an old quasi-velocity.
+    /// ones. A name may be the same as that of an old quasi-velocity.
     ///
     /// With η = B η' + B_0 the forces are Q'_u = B_su Q_s; the structure coefficients are those of
     /// [`FrameChange::structure_coefficients`].

@@ -17,8 +17,8 @@ impl<'g> System<'g> {
     ///   d/dt ∂L/∂η_s = c_rs^m η_r ∂L/∂η_m + Q_s,
     ///
     /// the [canonical](System::canonical) ones the Lie–Poisson equations, ẏ_s = c_rs^m ∂H/∂y_r y_m. Integrals and
-    /// outputs that contain these coordinates are left out too. The coordinates can be recovered by integrating ẋ = b
-    /// η + b_0 (3).
+    /// outputs that contain the omitted coordinates are left out too. The omitted coordinates can be recovered by
+    /// integrating ẋ = b η + b_0 (3).
     ///
     /// # Errors
     /// [`MechError::Algebra`] if the parts do not fit together, which cannot happen for a system that was
@@ -85,7 +85,8 @@ impl<'g> System<'g> {
         })
     }
 
-    /// The coordinates on which `dynamics` depend, and those on which the velocities of these depend.
+    /// The coordinates on which `dynamics` depend, and the coordinates on which their velocities depend in
+    /// turn.
     fn kept(&self, dynamics: &[Expr<'g>]) -> Vec<usize> {
         let x = self.frame.coordinates();
         let mut matters: Vec<bool> = x.iter().map(|&x| dynamics.iter().any(|f| f.depends_on(x))).collect();

@@ -6,14 +6,14 @@ use crate::error::{MechError, ShapeError};
 use crate::system::system::System;
 
 impl<'g> System<'g> {
-    /// The system of the first `free` quasi-velocities whose equations (9) are those of this one with the nonholonomic
-    /// constraints η_α = 0, α > `free`, in the form (32):
+    /// The system of the first `free` quasi-velocities whose equations (9) are those of the present system under the
+    /// nonholonomic constraints η_α = 0, α > `free`, in the form (32):
     ///
     ///   d/dt ∂θ/∂η_s = (c_rs^m η_r + c_0s^m) ∂θ/∂η_m + (c_rs^α η_r + c_0s^α) (∂L/∂η_α)_0 + X_s (θ + U) + Q_s,
     ///
     /// r, s, m ≤ `free`, where θ + U is L with the constraints substituted. The second term, which substitution
-    /// alone would lose, is included in its forces, so that its [canonical](System::canonical) equations are
-    /// (34), with y_s = ∂θ/∂η_s.
+    /// alone would lose, is included in the forces of the new system, so that its
+    /// [canonical](System::canonical) equations are (34), with y_s = ∂θ/∂η_s.
     ///
     /// Its structure coefficients are the c_rs^m, m ≤ `free`, which are not those of its frame unless the
     /// constraints are integrable; the bracket that they define does not satisfy Jacobi's identity.

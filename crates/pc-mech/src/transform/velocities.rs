@@ -69,7 +69,7 @@ impl VelocityTransform {
     /// The state (x, ẋ), of length 2n, that corresponds to (x, η), of length n + k.
     ///
     /// # Panics
-    /// If the state has another length.
+    /// If the state has a different length.
     pub fn to_velocities(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
         let mut result = vec![0.0; self.velocities.program().outputs_len()];
         self.velocities.eval(t, state, &self.parameters, &mut result);
@@ -79,7 +79,7 @@ impl VelocityTransform {
     /// The state (x, η), of length n + k, that corresponds to (x, ẋ), of length 2n.
     ///
     /// # Panics
-    /// If the state has another length.
+    /// If the state has a different length.
     pub fn to_quasi_velocities(&mut self, t: f64, state: &[f64]) -> Vec<f64> {
         let mut result = vec![0.0; self.quasi_velocities.program().outputs_len()];
         self.quasi_velocities.eval(t, state, &self.parameters, &mut result);

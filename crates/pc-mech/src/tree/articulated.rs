@@ -59,7 +59,7 @@ impl<'g> Inertia6<'g> {
         self.map(|r, c, entry| graph.keep(entry + other.0[r][c]))
     }
 
-    /// The symmetric matrix with each entry on and below the diagonal replaced by `put` of it.
+    /// The symmetric matrix with `put` applied to each entry on and below the diagonal.
     fn map(&self, put: impl Fn(usize, usize, Expr<'g>) -> Expr<'g>) -> Inertia6<'g> {
         let mut mapped = *self;
         for r in 0..6 {
@@ -86,8 +86,8 @@ impl<'g> Inertia6<'g> {
         (tensor(|i, j| self.0[i][j]), tensor(|i, j| self.0[i][j + 3]), tensor(|i, j| self.0[i + 3][j + 3]))
     }
 
-    /// The inertia seen from the parent: rotated to the parent's axes, then taken about its origin; the origin
-    /// of the link is at `place` relative to that.
+    /// The inertia seen from the parent: rotated to the parent's axes, then taken about the parent's origin;
+    /// the origin of the link is at `place` relative to the parent's origin.
     ///
     ///   G = Hᵀ − M r̂,   J ← J − H r̂ + r̂ G,   H ← Gᵀ
     fn seen(&self, graph: &'g Graph, turning: &Turning<'g>, place: &Vector<'g>) -> Inertia6<'g> {
@@ -146,7 +146,7 @@ fn skew<'g>(r: &Vector<'g>) -> Tensor<'g> {
 /// A free component of a joint that has been eliminated.
 #[derive(Clone, Debug)]
 pub(crate) struct Freedom<'g> {
-    /// The direction in which it moves, in the axes of its link.
+    /// The direction in which the component moves, along the axes of its link.
     direction: Direction<'g>,
     /// Φ s
     column: Spatial<'g>,
@@ -218,7 +218,7 @@ impl<'g> Freedom<'g> {
         }
     }
 
-    /// Removes the free component from an acceleration and returns it, if it is one of the six.
+    /// Removes the free component from an acceleration and returns it, if it is one of the six components.
     pub(crate) fn leave_out(&self, a: &mut Spatial<'g>) -> Expr<'g> {
         match self.direction.pitch.is_zero() {
             true => std::mem::replace(&mut a[self.direction.component], Expr::ZERO),
@@ -240,7 +240,8 @@ impl<'g> Hinge<'g> {
     }
 }
 
-/// A tree whose joints have been eliminated: M⁻¹ in the form in which it is applied, in O(N).
+/// A tree whose joints have been eliminated: M⁻¹ in the form in which it is applied, which takes O(N)
+/// operations.
 #[derive(Clone, Debug)]
 pub(crate) struct Articulated<'g> {
     graph: &'g Graph,
@@ -259,7 +260,7 @@ pub(crate) struct Eliminated<'g> {
 
 impl<'g> Articulated<'g> {
     /// Eliminates the joints of links with these masses, from the last to the first. Where all inertias are
-    /// nonnegative, those of the single bodies, `own`, show which pivots cannot vanish.
+    /// nonnegative, the inertias of the single bodies, `own`, show which pivots cannot vanish.
     pub(crate) fn of(
         graph: &'g Graph,
         links: &[Link<'g>],
@@ -298,7 +299,7 @@ impl<'g> Articulated<'g> {
     }
 
     /// The response of the free components to the forces p on the links and the components τ = `applied` of the
-    /// joints, link by link, relative to the accelerations to which p belongs.
+    /// joints, link by link, relative to the accelerations for which p was computed.
     pub(crate) fn solve(
         &self,
         forces: Vec<Option<Spatial<'g>>>,
@@ -357,8 +358,8 @@ impl<'g> Articulated<'g> {
     }
 }
 
-/// Eliminates a component, so that the remaining `inertia` does not resist it. Its pivot is watched if the
-/// `size` of its terms is given.
+/// Eliminates a component, so that the remaining `inertia` does not resist it. The pivot of the component is
+/// watched if the `size` of its terms is given.
 fn eliminate<'g>(
     graph: &'g Graph,
     inertia: &mut Inertia6<'g>,

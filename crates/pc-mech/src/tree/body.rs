@@ -7,7 +7,7 @@ use crate::system::bodies::rigid_body::Inertia;
 use crate::tree::joint::Joint;
 use crate::tree::spatial::{Vector, ZERO};
 
-/// A body, and the joint that connects it to another.
+/// A body, and the joint that connects it to another body.
 #[derive(Clone, Debug)]
 pub struct TreeBody<'g> {
     pub(crate) name: String,

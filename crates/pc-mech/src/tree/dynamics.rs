@@ -6,13 +6,13 @@
 //!
 //! with ω_r, v_r relative to the parent and B = α̂ + ω̂ω̂; the world accelerates by −g, which replaces the
 //! weights. The force on the link is f = m a + B h, n = I α + ω × I ω + h × a, with the first moment h = m c.
-//! The difference between η̇ and a reference motion follows from [articulated
+//! The difference between η̇ and the accelerations in a reference motion is computed with [articulated
 //! inertias](crate::tree::articulated). In the reference motion the components of α and a that the joint
 //! leaves free are zero, an arbitrary choice.
 //!
 //! These are Poincaré's equations (9) with the velocities of all links as auxiliary quasi-velocities: d/dt
-//! ∂T/∂ω + ω × ∂T/∂ω for each link is (18) on its Lie algebra, and the joints are constraints that relate
-//! them to η.
+//! ∂T/∂ω + ω × ∂T/∂ω for each link is (18) on its Lie algebra, and the joints are constraints that relate the
+//! velocities of the links to η.
 
 use pc_expr::{Expr, Graph};
 
@@ -77,7 +77,7 @@ impl<'g> Acceleration<'g> {
     }
 }
 
-/// The equations of a tree: with τ, the components of Q + X U on its joints, link by link.
+/// The equations of a tree, with τ: the components of Q + X U on its joints, link by link.
 #[derive(Clone, Debug)]
 pub(crate) struct TreeDynamics<'g> {
     graph: &'g Graph,

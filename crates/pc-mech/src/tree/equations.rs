@@ -14,7 +14,7 @@ pub(crate) struct TreeEquations<'g> {
 }
 
 impl TreeEquations<'_> {
-    /// Checks that some inertia resists each joint.
+    /// Checks that every free direction of a joint moves some inertia.
     ///
     /// # Errors
     /// [`LagrangianError::Degenerate`] with the quasi-velocities that no inertia resists.

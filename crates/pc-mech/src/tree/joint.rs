@@ -7,8 +7,8 @@ use crate::tree::spatial::{Tensor, Vector, ZERO, entries_of, unit};
 
 /// A joint: how a body moves relative to its parent.
 ///
-/// It is at a point of the parent, with axes of its own. The origin of the body is the point of the joint, and
-/// the axes of the body coincide with those of the joint when all coordinates of the joint vanish.
+/// A joint is at a point of the parent, and has axes of its own. The origin of the body is the point of the
+/// joint, and the axes of the body coincide with those of the joint when all coordinates of the joint vanish.
 ///
 /// | kind | movement of the body | coordinates, quasi-velocities of a body `arm` |
 /// |---|---|---|
@@ -24,7 +24,7 @@ use crate::tree::spatial::{Tensor, Vector, ZERO, entries_of, unit};
 #[derive(Clone, Debug)]
 pub struct Joint<'g> {
     pub(crate) kind: Kind<'g>,
-    /// The point of the joint, along the axes of the parent from its origin.
+    /// The point of the joint, relative to the parent's origin and along the parent's axes.
     pub(crate) place: Vector<'g>,
     /// The rotation from the axes of the joint to those of the parent.
     pub(crate) rotation: Tensor<'g>,
@@ -76,7 +76,8 @@ impl<'g> Joint<'g> {
         Joint::of(Kind::Cylindrical(axis))
     }
 
-    /// A joint that turns about the first axis, then about the second, which is carried along.
+    /// A joint that turns about the first axis, then about the second, which the first rotation carries
+    /// along.
     pub fn universal(first: [f64; 3], second: [f64; 3]) -> Joint<'g> {
         Joint::of(Kind::Universal(first, second))
     }
@@ -97,13 +98,14 @@ impl<'g> Joint<'g> {
         Joint::of(Kind::Free)
     }
 
-    /// The same joint at a point given along the axes of the parent from its origin.
+    /// The same joint at a point whose components, from the parent's origin, are along the parent's axes.
     #[must_use]
     pub fn at(self, place: [impl Into<Expr<'g>>; 3]) -> Joint<'g> {
         Joint { place: place.map(Into::into), ..self }
     }
 
-    /// The same joint with other axes, given by the constant rotation from them to those of the parent.
+    /// The same joint with other axes, given by the constant rotation from the new axes to those of the
+    /// parent.
     ///
     /// # Panics
     /// If it does not have three rows and columns.
@@ -113,7 +115,7 @@ impl<'g> Joint<'g> {
         Joint { rotation: entries_of(rotation), ..self }
     }
 
-    /// The same joint with other names of its coordinates and quasi-velocities.
+    /// The same joint with other names for its coordinates and quasi-velocities.
     #[must_use]
     pub fn named<S: Into<String>>(
         self,
@@ -137,7 +139,7 @@ impl<'g> Joint<'g> {
         }
     }
 
-    /// Names of the coordinates and quasi-velocities for a body with that name.
+    /// The names of the coordinates and quasi-velocities of the joint, for a body with the given name.
     pub(crate) fn names_for(&self, body: &str) -> (Vec<String>, Vec<String>) {
         self.names.clone().unwrap_or_else(|| self.kind.names(body))
     }

@@ -1,4 +1,4 @@
-//! The motion of bodies, computed from each body to those attached to it.
+//! The motion of bodies, computed recursively from each body to those attached to it.
 
 use pc_algebra::{LieGroup, Matrix, Side, UnitQuaternions};
 use pc_expr::{Expr, Graph};

@@ -7,10 +7,10 @@ use crate::tree::spatial::{Tensor, Vector};
 /// An elementary movement of a joint, between two sets of axes. Bodies can be fixed to the second.
 #[derive(Clone, Debug)]
 pub(crate) struct Link<'g> {
-    /// The link to which it is attached; `None` for the world.
+    /// The link to which this one is attached; `None` for the world.
     pub(crate) parent: Option<usize>,
-    /// The position of its origin when its coordinates vanish, and the matrix from its axes to those of the
-    /// parent in that position.
+    /// The position of the link's origin when its coordinates vanish, and the matrix from the link's axes to
+    /// the parent's in that position.
     pub(crate) place: Vector<'g>,
     pub(crate) rotation: Tensor<'g>,
     pub(crate) hinge: Hinge<'g>,
@@ -36,8 +36,8 @@ pub(crate) enum Hinge<'g> {
         quaternion: [Expr<'g>; 4],
         omega: Vector<'g>,
     },
-    /// Moves freely: the origin is at `way` along the axes of the joint, and has the velocity v relative to
-    /// the parent, along the axes of the link.
+    /// Moves freely: `way` is the position of the origin along the axes of the joint; its velocity v relative
+    /// to the parent is along the axes of the link.
     Free {
         way: Vector<'g>,
         quaternion: [Expr<'g>; 4],

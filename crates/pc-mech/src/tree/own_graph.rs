@@ -6,8 +6,8 @@ use crate::system::system::System;
 use crate::tree::system::TreeSystem;
 
 impl<'g> System<'g> {
-    /// The same system in an empty graph, where `tree` is its tree: derivations there depend on the system
-    /// alone, to the last bit, whatever else the original graph contains.
+    /// The same system in an empty graph, with its tree `tree`: derivations there depend on the system alone,
+    /// to the last bit, whatever else the original graph contains.
     pub(crate) fn in_graph<'n>(&self, tree: &TreeSystem<'g>, graph: &'n Graph) -> System<'n> {
         let copy = Transcription::new(self.graph(), graph);
         let put = |x: Expr<'g>| copy.write(x);

@@ -9,8 +9,8 @@ use crate::tree::system::TreeSystem;
 
 /// The force and the moment that a joint exerts on its body, in terms of (t, x, η, η̇).
 ///
-/// Both are along the axes of the body, and the moment is about its origin. Their components in the free
-/// directions of the joint are the generalised forces on the joint.
+/// Force and moment are along the axes of the body, and the moment is about its origin. Their components in
+/// the free directions of the joint are the generalised forces on the joint.
 #[derive(Clone, Debug)]
 pub struct JointReaction<'g> {
     pub(crate) body: String,
@@ -37,15 +37,15 @@ impl<'g> JointReaction<'g> {
 
 impl<'g> System<'g> {
     /// The forces and moments of the joints of a [tree](crate::Tree) on their bodies (Newton's and Euler's
-    /// equations from the tips to the root); none for a system that is not a tree, nor for bodies fixed to
-    /// others. As [outputs](System::with_more_outputs) they are observed along a motion.
+    /// equations from the tips to the root); none for a system that is not a tree, or for bodies fixed to
+    /// others. If added as [outputs](System::with_more_outputs), they are observed along a motion.
     pub fn joint_reactions(&self) -> Vec<JointReaction<'g>> {
         let Some(tree) = &self.tree else { return Vec::new() };
         tree.reactions(self)
     }
 
     /// The k generalised forces on the joints of the [tree](System::tree): Q + X U without the forces and
-    /// torques on bodies, and without their weight. Without a tree these are Q.
+    /// torques on bodies, and without their weight. For a system that is not a tree, these are Q.
     pub fn joint_forces(&self) -> Vec<Expr<'g>> {
         self.tree.as_ref().map_or_else(|| self.forces.clone(), |tree| tree.joint_forces(self))
     }

@@ -2,9 +2,9 @@
 //!
 //! A part of a body's inertia can be attributed to the parent: for a body that turns about an axis, its mass
 //! at the joint, the first moment along the axis, and as much of an inertia about all perpendicular axes as
-//! makes one of them vanish; for a body that turns about a point, its mass there; for one that slides, its
-//! inertia. Accelerations are unchanged, and zero entries cost nothing at each evaluation (*base parameters*;
-//! Gautier & Khalil 1990). The result depends on parameters alone.
+//! makes one of them vanish; for a body that turns about a point, its mass at that point; for a body that
+//! slides, its inertia. Accelerations are unchanged, and zero entries cost nothing at each evaluation (*base
+//! parameters*; Gautier & Khalil 1990). The result depends on parameters alone.
 
 use pc_expr::Expr;
 

@@ -9,8 +9,8 @@ use crate::tree::link::Link;
 use crate::tree::spatial::Vector;
 use crate::tree::tree::Tree;
 
-/// A system whose inertia is entirely that of a tree: L consists of its kinetic energy, its weight and a
-/// force function U(t, x).
+/// A system whose inertia is entirely that of a tree: L consists of the kinetic energy of the tree, its
+/// weight, and a force function U(t, x).
 #[derive(Clone, Debug)]
 pub(crate) struct TreeSystem<'g> {
     pub(crate) tree: Tree<'g>,
@@ -22,9 +22,9 @@ pub(crate) struct TreeSystem<'g> {
 }
 
 impl<'g> TreeSystem<'g> {
-    /// The system of a tree with the rest of the Lagrangian; `None` if there is other inertia, if the bodies
-    /// do not move as the joints prescribe, if the tree lacks a quasi-velocity, or if gravity depends on the
-    /// position, since the world then has no single acceleration.
+    /// The system of a tree with the rest of the Lagrangian; `None` if anything else has inertia, if the
+    /// bodies do not move as the joints prescribe, if the tree lacks a quasi-velocity, or if gravity depends
+    /// on the position, since the world then has no single acceleration.
     pub(crate) fn of(
         tree: Tree<'g>,
         gravity: Vector<'g>,
@@ -101,7 +101,7 @@ impl<'g> TreeSystem<'g> {
         self.places.iter().map(|places| places.iter().map(|&place| ordered[place]).collect()).collect()
     }
 
-    /// The system with each expression replaced by `put` of it, in another graph.
+    /// The system with `put` applied to each expression, in another graph.
     pub(crate) fn map<'n>(&self, graph: &'n Graph, put: impl Fn(Expr<'g>) -> Expr<'n>) -> TreeSystem<'n> {
         TreeSystem {
             tree: self.tree.map(graph, &put),

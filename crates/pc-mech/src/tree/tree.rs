@@ -15,14 +15,14 @@ use crate::tree::spatial::{
 
 /// Bodies joined by joints: one or more trees attached to the world.
 ///
-/// Its coordinates are those of the joints, in the order in which the bodies are declared; its
+/// The coordinates of the tree are those of the joints, in the order in which the bodies are declared; its
 /// quasi-velocities are velocities of a body relative to its parent. The velocities of a body follow from
 /// those of its parent,
 ///
 /// ω = Rᵀ ω_p + ω_joint, v = Rᵀ (v_p + ω_p × r) + v_joint,
 ///
 /// along body axes, with R from the axes of the body to those of its parent and r the position of its origin
-/// along the latter.
+/// along the parent's axes.
 ///
 /// ```
 /// use pc_mech::{Graph, Joint, System, Tree, TreeBody};
@@ -55,8 +55,8 @@ pub struct Tree<'g> {
     pub(crate) own: Vec<Range<usize>>,
 }
 
-/// The maximum number of elementary joints in a tree whose equations are also derived as a whole: with more,
-/// they do not fit on a page.
+/// The maximum number of elementary joints in a tree whose equations are also derived as a whole: with more
+/// joints, the equations do not fit on a page.
 const MANY_LINKS: usize = 4;
 
 /// The link to which a body is fixed, and where.
@@ -64,9 +64,9 @@ const MANY_LINKS: usize = 4;
 pub(crate) struct Stand<'g> {
     /// The link; `None` for the world.
     pub(crate) link: Option<usize>,
-    /// Its origin, along the axes of the link.
+    /// The origin of the body, along the axes of the link.
     pub(crate) place: Vector<'g>,
-    /// The rotation from its axes to those of the link.
+    /// The rotation from the axes of the body to those of the link.
     pub(crate) rotation: Tensor<'g>,
 }
 
@@ -107,7 +107,7 @@ impl<'g> Tree<'g> {
         self.declared().flat_map(|link| self.links[link].hinge.quasi_velocities()).collect()
     }
 
-    /// The quaternions of the joints that have one; each has |q| = 1.
+    /// The quaternions of the joints that have one; each quaternion has |q| = 1.
     pub fn quaternions(&self) -> Vec<[Expr<'g>; 4]> {
         let quaternion = |link: usize| match &self.links[link].hinge {
             Hinge::Ball { quaternion, .. } | Hinge::Free { quaternion, .. } => Some(*quaternion),
@@ -231,7 +231,7 @@ impl<'g> Tree<'g> {
         self.links.len() > MANY_LINKS
     }
 
-    /// The tree with each expression replaced by `put` of it, in another graph.
+    /// The tree with `put` applied to each expression, in another graph.
     pub(crate) fn map<'n>(&self, graph: &'n Graph, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> Tree<'n> {
         let stand = |stand: &Stand<'g>| Stand {
             link: stand.link,

@@ -5,7 +5,7 @@ use pc_expr::{Expr, Graph};
 use crate::tree::link::{Hinge, Link};
 use crate::tree::spatial::{Tensor, Vector, apply, congruent, tensor, transpose, unit, vector};
 
-/// A rotation composed of that of the hinge and a constant one after it.
+/// A rotation composed of the rotation of the hinge and a constant rotation after it.
 #[derive(Clone, Debug)]
 pub(crate) struct Turning<'g> {
     hinge: HingeTurning<'g>,
@@ -87,7 +87,7 @@ fn in_plane<'g>(axis: usize, cos: Expr<'g>, sin: Expr<'g>, v: &Vector<'g>) -> Ve
 ///
 ///   (A_pp − s X, c X − A_qp; c X − A_pq, A_qq + s X),
 ///
-/// by s² + c² = 1: less than half the operations of two products.
+/// since s² + c² = 1: this takes less than half the operations of two products.
 fn matrix_in_plane<'g>(
     graph: &'g Graph,
     axis: usize,

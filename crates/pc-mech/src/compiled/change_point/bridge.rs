@@ -12,11 +12,11 @@ use crate::compiled::motion::Motion;
 use crate::compiled::point::Point;
 use crate::error::{ConstraintError, MechError};
 
-/// If the least pivot is below this, a state where it vanishes is looked for ahead, since steps get short
-/// there.
+/// If the least pivot is below this, the motion ahead is searched for a state where the pivot vanishes, since
+/// steps get short there.
 const NEAR: f64 = 0.1;
 
-/// How many steps ahead such a state is looked for.
+/// The number of steps ahead that are searched for such a state.
 const STEPS_AHEAD: f64 = 5.0;
 
 /// A least pivot below this is treated as rounding error: positions are known to 1e-16, directions only to this
@@ -29,13 +29,13 @@ const MAGNIFIED: f64 = 1e-11;
 const LARGEST_ERROR: f64 = 1e-8;
 
 /// The error up to which a step across the loss of rank is confirmed, the tolerance of the smooth motion
-/// compared with it, and the smallest fraction of its length that is tried.
+/// compared with it, and the smallest fraction of the step's length that is tried.
 const CONFIRMED: f64 = 1e-3;
 const COARSE: f64 = 1e-6;
 const SHORTEST: f64 = 1.0 / 256.0;
 
 /// The number of parts into which a smooth motion is divided; constraints are assumed to turn by less than a
-/// right angle in each.
+/// right angle in each part.
 const PARTS: usize = 16;
 
 /// The number of halvings by which the loss of rank is located.
@@ -44,12 +44,12 @@ const HALVINGS: usize = 30;
 /// What happens to the rank of the constraints along a smooth motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Rank {
-    /// It is not lost.
+    /// The rank is not lost.
     Full,
-    /// It is lost at a state that satisfies the constraints: motions cross there.
+    /// The rank is lost at a state that satisfies the constraints: motions cross there.
     Lost,
-    /// It is lost at a state that does not satisfy them: this is not a motion, since it leaves the surface for
-    /// another sheet of it.
+    /// The rank is lost at a state that does not satisfy the constraints: the curve is not a motion there,
+    /// since it leaves the surface for another of its sheets.
     Passed,
 }
 
@@ -57,8 +57,8 @@ enum Rank {
 pub(crate) type Rates<'a> = dyn FnMut(&mut Motion, f64, &[f64], &mut [f64]) -> Result<(), Failure> + 'a;
 
 impl Motion {
-    /// Watches the rank of the constraints from one end of a step to the other, and builds a bridge if it is about to
-    /// be lost.
+    /// Watches the rank of the constraints from one end of a step to the other, and builds a bridge if the
+    /// constraints are about to lose rank.
     ///
     /// # Errors
     /// [`RankLost`](crate::ConstraintError::RankLost) where the motion is undetermined.
@@ -155,15 +155,16 @@ impl Motion {
         Some((motion, rank))
     }
 
-    /// Whether a polynomial may replace the motion: it has no derivatives with respect to state and parameters, and
-    /// does not represent forces that jump or have corners.
+    /// Whether a polynomial may replace the motion: a polynomial has no derivatives with respect to state and
+    /// parameters, and cannot represent forces that jump or have corners.
     fn takes_bridge(&self, from: f64, end: f64) -> bool {
         let has_derivatives = self.options.jvp || self.options.parameter_jacobian;
         let breaks = self.signals.breaks().iter().any(|&t| (t - from) * (t - end) <= 0.0);
         !has_derivatives && !breaks && !self.watch.refuses && self.switches.is_none()
     }
 
-    /// Whether a step follows the smooth motion, if rank may have been lost between its ends.
+    /// Whether a step follows the smooth motion, if the constraints may have lost rank between the ends of
+    /// the step.
     fn passes(&mut self, from: (f64, &[f64]), to: (f64, &[f64]), rates: &mut Rates<'_>) -> bool {
         let (mut t, mut y) = (from.0, from.1.to_vec());
         let (mut length, mut is_lost) = (to.0 - from.0, false);

@@ -27,7 +27,8 @@ const MOST_RETURNS: usize = 2;
 ///
 ///   ẏ = Σ_j g_j P_j(x),   y = y(a) + (b − a) Σ_j g_j (P_{j+1}(x) − P_{j−1}(x))/(4j + 2),
 ///
-/// with Legendre polynomials P_j and P_{−1} = −1. The rates at the nodes agree with the field by least squares.
+/// with Legendre polynomials P_j and P_{−1} = −1. The rates are fitted to the field at the nodes by least
+/// squares.
 #[derive(Clone, Debug)]
 pub(crate) struct Collocation {
     pub(crate) start: f64,
@@ -95,7 +96,7 @@ impl Collocation {
     }
 
     /// The Legendre series fitted to the rates at the nodes, and the longest distance by which a state was
-    /// moved there.
+    /// moved at a node.
     fn improved(
         &self,
         flow: &mut Flow<'_>,
@@ -157,7 +158,7 @@ impl Collocation {
     }
 }
 
-/// The larger of two numbers; NaN if one of them is NaN (f64::max would lose it).
+/// The larger of two numbers; NaN if one of them is NaN, whereas f64::max would return the other.
 fn larger(a: f64, b: f64) -> f64 {
     if a > b || a.is_nan() { a } else { b }
 }
@@ -180,8 +181,8 @@ fn nodes() -> impl Iterator<Item = f64> {
 mod tests {
     use super::*;
 
-    /// ẍ = −x from (1, 0) over half a unit of time: the terms left out, from 4⁻⁸/(15·13⋯3) = 8e-12 on, are far below the
-    /// last terms kept, of 1e-8, by which the error is judged.
+    /// ẍ = −x from (1, 0) over half a unit of time: the terms left out, from 4⁻⁸/(15·13⋯3) = 8e-12 on, are far below
+    /// the last terms kept, about 1e-8, from which the error is estimated.
     #[test]
     fn an_oscillation_is_followed() {
         let mut flow = |_: f64, y: &mut [f64], rates: &mut [f64]| {

@@ -40,7 +40,7 @@ impl Seen {
         Seen { t, state: y.to_vec(), rank, sizes, least, largest: least, tried: f64::INFINITY }
     }
 
-    /// Moves to the state after a step; returns the rank before it.
+    /// Moves to the state at the end of a step; returns the rank at its start.
     pub(super) fn advance(&mut self, (t, y): (f64, &[f64]), rank: Independence) -> Independence {
         self.sizes.iter_mut().zip(&rank.row_sizes).for_each(|(size, now)| *size = size.max(*now));
         let before = std::mem::replace(&mut self.least, least(&rank, &self.sizes).0);
@@ -74,12 +74,12 @@ impl Watch {
         self.bridge.as_deref().filter(|bridge| bridge.contains(t) && bridge.is_near(t, y))
     }
 
-    /// Forgets the rank and the bridge, since another motion begins.
+    /// Forgets the rank and the bridge, since a different motion begins.
     pub(crate) fn forget(&mut self) {
         (self.last, self.bridge) = (None, None);
     }
 
-    /// Declares that the method needs derivatives of the rates, so that bridges are not used.
+    /// Declares that the method needs derivatives of the rates, which rules out bridges.
     pub(crate) fn refuse_bridges(&mut self) {
         self.refuses = true;
     }

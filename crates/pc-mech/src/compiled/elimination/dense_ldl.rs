@@ -20,7 +20,7 @@ const DEPENDENT: f64 = 1e-13;
 #[derive(Clone, Debug)]
 pub(crate) struct DenseLdl {
     matrix: Mat<f64>,
-    /// The sizes with which pivots are compared: the diagonal of M unless others are given.
+    /// The sizes against which pivots are compared: the diagonal of M unless others are given.
     sizes: Vec<f64>,
     pivots: Vec<f64>,
     scratch: Vec<MaybeUninit<u8>>,
@@ -40,8 +40,8 @@ impl DenseLdl {
         }
     }
 
-    /// Factorises M, given by its `values` at the indices `lower` on and below the diagonal; all must be
-    /// finite.
+    /// Factorises M, given by its `values` at the indices `lower` on and below the diagonal; all values must
+    /// be finite.
     ///
     /// # Errors
     /// [`EvaluationFailure::Pivot`] for the first pivot that vanishes.
@@ -79,7 +79,7 @@ impl DenseLdl {
     /// though a leading minor vanishes.
     ///
     /// # Errors
-    /// The `failure` of elimination without pivoting, if M is singular.
+    /// The given `failure`, which is that of elimination without pivoting, if M is singular.
     #[cold]
     fn eliminate_pivoted(
         &mut self,
@@ -126,7 +126,7 @@ impl DenseLdl {
         }
     }
 
-    /// Replaces each of the columns, of length k, by M⁻¹ times it.
+    /// Replaces each of the columns v, of length k, by M⁻¹ v.
     pub(crate) fn solve(&mut self, columns: &mut [f64]) {
         let k = self.sizes.len();
         if let Some(factors) = &self.pivoted {

@@ -96,7 +96,7 @@ impl Staged {
         &self.cost
     }
 
-    /// The same system, which takes w from `schur` where only w is needed.
+    /// The same system, with w computed by `schur` where only w is needed.
     pub(crate) fn by_joints(self, schur: Schur) -> Staged {
         Staged { schur: Some(Box::new(schur)), ..self }
     }
@@ -186,8 +186,8 @@ impl Staged {
         check_finite(ydot, &self.rates, Point { t, y: &self.known, p })
     }
 
-    /// Writes the observables; those that contain w are not finite if it has no solution, or if `solved`
-    /// is false.
+    /// Writes the observables; those that contain w are not finite if there is no solution for w, or if
+    /// `solved` is false.
     pub(crate) fn observe(&mut self, (t, y, p): (f64, &[f64], &[f64]), values: &mut [f64], solved: bool) {
         if !solved || self.solve(t, y, p).is_err() {
             let (state, unknowns) = self.known.split_at_mut(self.dim);

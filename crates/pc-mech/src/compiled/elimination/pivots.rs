@@ -22,7 +22,7 @@ const SQUARE_OF_ROUNDING: f64 = 2.0 * f64::EPSILON * f64::EPSILON;
 /// and their rounding errors, large.
 ///
 /// # Errors
-/// [`EvaluationFailure::Pivot`] with the index of the first that vanishes.
+/// [`EvaluationFailure::Pivot`] with the index of the first pivot that vanishes.
 #[inline]
 pub(crate) fn check(pivots: &[f64], sizes: &[f64]) -> Result<(), EvaluationFailure> {
     let largest = sizes.iter().fold(0.0f64, |largest, size| largest.max(size.abs()));
@@ -49,8 +49,8 @@ fn closely(pivots: &[f64], sizes: &[f64], largest: f64) -> Result<(), Evaluation
     }
 }
 
-/// The layout of the pivots: which of them and of their sizes change with the state. Both form one list: the
-/// pivots, then as many sizes.
+/// The layout of the pivots: which pivots, and which of their sizes, change with the state. One list contains
+/// all pivots, followed by as many sizes.
 #[derive(Debug)]
 pub(crate) struct PivotPartition {
     /// The index of the quasi-velocity of each pivot.
@@ -58,7 +58,7 @@ pub(crate) struct PivotPartition {
     /// The indices of the numbers that change with the state, and how many of them are pivots.
     moving: Vec<usize>,
     moving_pivots: usize,
-    /// The indices of the numbers that do not.
+    /// The indices of the numbers that do not change with the state.
     fixed: Vec<usize>,
 }
 
@@ -68,7 +68,7 @@ const LARGEST: usize = 1;
 const ALL: usize = 2;
 
 impl PivotPartition {
-    /// The number of fixed numbers.
+    /// How many fixed numbers there are.
     pub(crate) fn fixed_len(&self) -> usize {
         ALL + self.fixed.len()
     }
@@ -78,7 +78,7 @@ impl PivotPartition {
         self.moving.len()
     }
 
-    /// Checks that no pivot vanishes, from the fixed numbers and the values of those that change.
+    /// Checks that no pivot vanishes, given the fixed numbers and the values of the numbers that change.
     ///
     /// # Errors
     /// [`EvaluationFailure::Pivot`] for the first pivot that vanishes.
@@ -111,8 +111,8 @@ impl PivotPartition {
     }
 }
 
-/// The pivots of M and the sizes with which they are compared. Those that depend on parameters alone are
-/// computed once for their values.
+/// The pivots of M and the sizes with which they are compared. Pivots and sizes that depend on parameters
+/// alone are computed once for given values of the parameters.
 #[derive(Clone, Debug)]
 pub(crate) struct Pivots {
     partition: Arc<PivotPartition>,
@@ -160,10 +160,10 @@ impl Pivots {
         self.is_known = false;
     }
 
-    /// Checks that no pivot vanishes; `moving` are the values of those that change.
+    /// Checks that no pivot vanishes; `moving` are the values of the numbers that change.
     ///
     /// # Errors
-    /// [`EvaluationFailure::Pivot`] for the first that vanishes.
+    /// [`EvaluationFailure::Pivot`] for the first pivot that vanishes.
     #[inline]
     pub(crate) fn check(
         &mut self,

@@ -18,8 +18,8 @@ pub(crate) struct Prologue {
 }
 
 impl Prologue {
-    /// Divides a program whose parameters with these indices may change at each evaluation; `None` if that
-    /// saves next to nothing.
+    /// Divides a program whose parameters with these indices may change at each evaluation; `None` if the
+    /// division saves next to nothing.
     pub(crate) fn of(program: &Program, varying: &[usize], backend: Backend) -> Option<Prologue> {
         let fixed: Vec<bool> = (0..program.parameters_len()).map(|i| !varying.contains(&i)).collect();
         let (of_parameters, rest) = program.hoisted(&fixed)?;

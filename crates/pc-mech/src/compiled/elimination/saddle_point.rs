@@ -8,7 +8,7 @@ use crate::compiled::failure::EvaluationFailure;
 /// A pivot of the constraints this small relative to their largest coefficient is treated as rounding error.
 const VANISHING_PIVOT: f64 = 1e-12;
 
-/// A spare row replaces another row if its pivot times this is still larger.
+/// A spare row replaces another row if the spare row's pivot is larger even when multiplied by this.
 const SPARE: f64 = 1e-2;
 
 /// The symmetric matrix
@@ -56,7 +56,8 @@ impl Saddle {
     }
 
     /// The matrix of k unknowns and m multipliers, where `rank` ≤ k rows of the constraints are independent.
-    /// The rows after the first `rank` are spare: they replace others only where those are nearly dependent.
+    /// The rows after the first `rank` are spare: they replace other rows only where the other rows are
+    /// nearly dependent.
     pub(crate) fn of_rank(k: usize, m: usize, rank: usize) -> Saddle {
         let free = k - rank;
         Saddle {
@@ -79,8 +80,8 @@ impl Saddle {
         }
     }
 
-    /// Factorises the matrix, given by its `values` at the indices `lower` on and below the diagonal; all must
-    /// be finite.
+    /// Factorises the matrix, given by its `values` at the indices `lower` on and below the diagonal; all
+    /// values must be finite.
     ///
     /// # Errors
     /// [`EvaluationFailure::Constraint`] with k plus the index of the constraint whose unknowns the others
@@ -94,7 +95,7 @@ impl Saddle {
         outcome.map_err(|failure| failure.at_place(|index| self.columns[self.rank + index]))
     }
 
-    /// As [`factorise`](Saddle::factorise), but stops once the dependent unknowns are known.
+    /// Like [`factorise`](Saddle::factorise), but stops once the dependent unknowns are known.
     ///
     /// # Errors
     /// As there.
@@ -142,7 +143,7 @@ impl Saddle {
 
     /// Factorises C = L U, up to the order of rows and columns, with complete pivoting. Coefficients are compared after
     /// division by the largest of their row and by the square root of the mass of their unknown, so that units do not
-    /// matter; an unknown without mass counts as the lightest of the others.
+    /// matter; an unknown without mass is treated as if it had the smallest of the other masses.
     fn pivot(&mut self) -> Result<(), EvaluationFailure> {
         let (k, m) = (self.k, self.m);
         let (mass, constraints) = (&self.mass, &self.constraints);
@@ -315,11 +316,11 @@ pub(crate) struct Independence {
 /// A pivot of C.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pivot {
-    /// The index of its constraint.
+    /// The index of the constraint to which the pivot belongs.
     pub(crate) constraint: usize,
-    /// The unknown that it determines.
+    /// The unknown that the constraint determines.
     pub(crate) unknown: usize,
-    /// Its size, in units in which the mass of that unknown is 1.
+    /// The size of the pivot, in units in which the mass of that unknown is 1.
     pub(crate) size: f64,
 }
 
@@ -349,7 +350,7 @@ mod tests {
     use super::*;
     use crate::random::numbers;
 
-    /// One symmetric matrix made of M = Nᵀ N + 1 and C, both random.
+    /// One symmetric matrix made of M = Nᵀ N + 1 and C, with random N and C.
     fn random(k: usize, m: usize, next: &mut impl FnMut() -> f64) -> Vec<Vec<f64>> {
         let n: Vec<f64> = (0..k * k).map(|_| next()).collect();
         let mut whole = vec![vec![0.0; k + m]; k + m];

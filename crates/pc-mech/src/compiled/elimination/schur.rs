@@ -5,7 +5,7 @@
 //!   S λ = γ − C a,   η̇ = a + Y λ,   S = C Y,   Y = M⁻¹ Cᵀ,   a = M⁻¹ r,
 //!
 //! which takes O(N c) operations plus c³ for c constraints, whereas the mass matrix bordered by C takes N³.
-//! S has the square of the condition number of C: where one of its pivots is small, the bordered matrix is
+//! The condition number of S is the square of that of C: where a pivot of S is small, the bordered matrix is
 //! used instead.
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Pattern, Program};
@@ -34,8 +34,8 @@ pub(crate) struct Schur {
 }
 
 impl Schur {
-    /// The solver for a tree with the given rows of C and γ; `None` if a joint has inertia only through a
-    /// loop.
+    /// The solver for a tree with the given rows of C and entries of γ; `None` if a joint has inertia only
+    /// through a loop.
     ///
     /// # Errors
     /// As for [`Program::new`].

@@ -31,7 +31,7 @@ impl Solver {
     }
 
     /// Factorises the matrix, given by its `values` at the indices `lower` on and below the diagonal; all
-    /// must be finite.
+    /// values must be finite.
     ///
     /// # Errors
     /// [`EvaluationFailure::Pivot`] with the index of the unknown whose pivot vanishes, or

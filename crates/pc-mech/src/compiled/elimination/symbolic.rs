@@ -46,7 +46,7 @@ pub(crate) struct Unrolled {
 enum Jacobian {
     /// An expression for each entry.
     Columns(Columns),
-    /// Column by column, as products with unit vectors: for large trees, where the entry for each pair of
+    /// Column by column, as products with unit vectors, for large trees, where the entry for each pair of
     /// bodies is long.
     Products(Pattern),
 }
@@ -107,7 +107,7 @@ impl Unrolled {
         }
     }
 
-    /// Marks further parameters, by their indices, as able to change at each evaluation.
+    /// Marks further parameters, given by their indices, as able to change at each evaluation.
     pub(crate) fn vary(&mut self, places: &[usize], backend: Backend) {
         if let Some(prologue) = self.prologue.take() {
             let varying = [prologue.varying(), places].concat();
@@ -123,7 +123,7 @@ impl Unrolled {
         }
     }
 
-    /// The number of operations of ẏ, not counting those of the pivots.
+    /// The number of operations needed to compute ẏ, not counting those for the pivots.
     pub(crate) fn cost(&self, dim: usize) -> Cost {
         self.rates.program().leading(dim).cost()
     }

@@ -34,7 +34,8 @@ pub(crate) struct Watched<'g> {
     pub(crate) size: Expr<'g>,
 }
 
-/// L D Lᵀ with L unit lower triangular in the order of elimination and D diagonal; both are indexed as M is.
+/// L D Lᵀ with L unit lower triangular in the order of elimination, and D diagonal; both have the indices of
+/// M.
 pub(crate) struct Ldl<'g> {
     order: Vec<usize>,
     /// The position of each row in the order of elimination.
@@ -62,8 +63,8 @@ impl<'g> Factors<'g> {
         }
     }
 
-    /// The pivots D with the diagonal entries of M before elimination; or, if a small M is inverted, its
-    /// determinant with a scale computed from its largest entry.
+    /// The pivots D with the diagonal entries of M before elimination; or, if a small M is inverted, the
+    /// determinant of M with a scale computed from its largest entry.
     pub(crate) fn watched(&self, graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Vec<Watched<'g>> {
         let rows = m.rows();
         match self {
@@ -113,7 +114,7 @@ impl<'g> Factors<'g> {
         }
     }
 
-    /// The nonzero entries of M⁻¹ r with their indices, from those of r.
+    /// The nonzero entries of M⁻¹ r with their indices, computed from the nonzero entries of r.
     pub(crate) fn solve_nonzero(&self, graph: &'g Graph, right: &[(usize, Expr<'g>)]) -> Entries<'g> {
         match self {
             _ if right.is_empty() => Vec::new(),
@@ -136,7 +137,8 @@ impl<'g> Ldl<'g> {
     }
 
     /// Whether the determinant of a matrix of two rows is a much shorter expression than the pivots whose
-    /// product it is: for a relativistic particle it is a power of the radicand in the Lagrangian.
+    /// product it is: for a relativistic particle the determinant is a power of the radicand in the
+    /// Lagrangian.
     fn is_longer(&self, graph: &'g Graph, m: &Matrix<Expr<'g>>) -> bool {
         let (2, Some(&last)) = (m.rows(), self.order.last()) else { return false };
         if !graph.know_root_powers(&m.nonzero_entries()) {
@@ -158,8 +160,8 @@ impl<'g> Ldl<'g> {
     }
 
     /// Eliminates row by row, L_ip = S_ip/S_pp, S_ij ← S_ij − L_ip S_pp L_jp, always choosing a row with the
-    /// fewest entries left, preferably one with a symbol as pivot: for example, a wheel before the body that
-    /// carries it. `None` if all remaining diagonal entries are zero.
+    /// fewest entries left, preferably one with a symbol as pivot: for example, the row of a wheel before
+    /// that of the body that carries the wheel. `None` if all remaining diagonal entries are zero.
     fn of(graph: &'g Graph, m: &Matrix<Expr<'g>>) -> Option<Ldl<'g>> {
         let k = m.rows();
         let mut schur: Vec<BTreeMap<usize, Expr<'g>>> = (0..k).map(|i| m.nonzero(i).collect()).collect();
@@ -206,7 +208,7 @@ impl<'g> Ldl<'g> {
         Some(ldl)
     }
 
-    /// As `solve`, but only for the unknowns that depend on the given entries of r.
+    /// Like `solve`, but only for the unknowns that depend on the given entries of r.
     fn solve_nonzero(&self, graph: &'g Graph, right: &[(usize, Expr<'g>)]) -> Entries<'g> {
         let mut z: BTreeMap<usize, Expr<'g>> = right.iter().copied().collect();
         let zero = |z: &BTreeMap<usize, Expr<'g>>, i: usize| z.get(&i).copied().unwrap_or(Expr::ZERO);

@@ -20,8 +20,8 @@ const HALVINGS: i32 = 20;
 /// step is damped, or is only rounding error.
 const CONVERGING: f64 = 0.25;
 
-/// The residual of f that a single rounding may cause, relative to the bound for all of them. Moving a state to
-/// remove it would add noise to the differences from which an integrator predicts the motion.
+/// The residual of f that a single rounding may cause, relative to the bound for all rounding errors together.
+/// Moving a state to remove it would add noise to the differences from which an integrator predicts the motion.
 const ONE_ROUNDING: f64 = 0.125;
 
 /// A step that could be caused by errors of f this many times their bounds is treated as rounding error: f has
@@ -29,7 +29,7 @@ const ONE_ROUNDING: f64 = 0.125;
 const ROUNDINGS: f64 = 4.0;
 
 /// With spare constraints, a step this short relative to the state is treated as rounding error: the active
-/// constraints may determine it a hundred times less accurately than others would.
+/// constraints may determine the state a hundred times less accurately than others would.
 const ROUNDING: f64 = 1e-12;
 
 /// A step this short relative to the state is treated as rounding error where the error of f has no bound, at
@@ -46,7 +46,7 @@ pub(crate) struct Conditions<'a, 'g> {
     pub(crate) positions: &'a [Expr<'g>],
     /// The index of the constraint of each f.
     pub(crate) places: Vec<usize>,
-    /// The functions g(t, x, η) for all constraints; ḟ = g for those on positions.
+    /// The functions g(t, x, η) for all constraints; for constraints on positions, g = ḟ.
     pub(crate) velocities: &'a [Expr<'g>],
     /// Whether every g is affine in η.
     pub(crate) affine: bool,
@@ -185,7 +185,7 @@ impl Surface {
     /// # Errors
     /// [`EvaluationFailure::NoProjection`] if no step leads closer, [`EvaluationFailure::Constraint`] where
     /// the surface is singular, [`EvaluationFailure::Departed`] where a condition that should follow from the
-    /// constraints does not.
+    /// constraints does not hold.
     pub(crate) fn project(&mut self, t: f64, y: &mut [f64], p: &[f64]) -> Result<(), EvaluationFailure> {
         self.factorise(t, y, p)?;
         if !self.places.is_empty() {
@@ -198,7 +198,7 @@ impl Surface {
     /// Moves the η of `y` to g = 0; x is unchanged.
     ///
     /// # Errors
-    /// As [`project`](Surface::project).
+    /// As for [`project`](Surface::project).
     pub(crate) fn project_velocities(
         &mut self,
         t: f64,
@@ -245,8 +245,8 @@ impl Surface {
         Ok(self.solver.independence_to(&mut found).then_some(found))
     }
 
-    /// Takes the weights from the diagonal of the mass matrix; a component without mass gets the smallest weight
-    /// of the others.
+    /// Takes the weights from the diagonal of the mass matrix; a component without mass gets the smallest of the
+    /// other weights.
     pub(super) fn weigh(&mut self) {
         let masses =
             || self.diagonal.iter().map(|place| place.map_or(0.0, |place| self.entries[place].abs()));
@@ -261,7 +261,8 @@ impl Surface {
     ///
     /// Steps are measured by δπ, in the metric given by the diagonal of M, and so independently of the units of
     /// f. A state is on the surface where f is within the bound of its rounding errors, where a step changes no
-    /// digit, or where a step is no longer than such errors would make it: then one last full step is taken.
+    /// digit, or where a step is no longer than such errors alone could make it: then one last full step is
+    /// taken.
     pub(super) fn project_part(
         &mut self,
         part: Part,

@@ -18,9 +18,9 @@ const ROUNDINGS: f64 = 2.0;
 const FALLEN: f64 = 0.2;
 
 impl Surface {
-    /// Whether the constraints on positions hold at a state near which they lose rank, in the combinations u, uᵀ C ≈ 0,
-    /// that restrict nothing there: then surfaces cross near this state. Otherwise two sheets pass each other there, and
-    /// the residual uᵀ f is the gap between them. `before` is a state at which the rank is still full.
+    /// Whether the constraints on positions hold at a state near which they lose rank, in those combinations u, with uᵀ
+    /// C ≈ 0, that restrict no velocity there: then surfaces cross near this state. Otherwise two sheets pass each
+    /// other there, and the residual uᵀ f is the gap between them. `before` is a state at which the rank is still full.
     pub(crate) fn crosses(&mut self, at: Point<'_>, before: Point<'_>) -> Result<bool, EvaluationFailure> {
         let rows = self.rows(before)?;
         let lengths: Vec<f64> = (0..rows.rows()).map(|a| length(&rows.row(a))).collect();

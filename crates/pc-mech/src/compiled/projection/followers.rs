@@ -20,7 +20,7 @@ pub(crate) struct Followers {
 }
 
 impl Followers {
-    /// The functions with the names of their constraints.
+    /// The given functions, each with the name of the constraint that it represents.
     ///
     /// # Errors
     /// As for [`Program::new`].

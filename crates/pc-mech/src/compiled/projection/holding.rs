@@ -1,4 +1,4 @@
-//! Projection to the surface with some components of the state unchanged.
+//! Projection onto the surface with some components of the state unchanged.
 
 use pc_algebra::Matrix;
 
@@ -10,7 +10,7 @@ use crate::numeric::least_squares::LeastSquares;
 /// A combination of rows this small relative to the rows is treated as rounding error.
 pub(super) const DEPENDENT: f64 = 1e-12;
 
-/// The same bound near states where constraints become dependent.
+/// The corresponding bound near states where constraints become dependent.
 pub(super) const NEARLY_DEPENDENT: f64 = 1e-7;
 
 /// A step this short relative to the state is treated as rounding error.
@@ -24,8 +24,8 @@ pub(crate) struct PrescribedComponents<'a> {
 }
 
 impl Surface {
-    /// Moves the components of `y` that are not `held` to the surface, x and then η, by the shortest steps δπ
-    /// in the kinetic metric with
+    /// Moves the components of `y` that are not `held` onto the surface, x first and then η, by the shortest
+    /// steps δπ in the kinetic metric with
     ///
     ///   (∂f/∂π) δπ = −f,   (b δπ)_i = 0 for the x_i held,   and   C δη = −g,   δη_s = 0 for the η_s held.
     ///

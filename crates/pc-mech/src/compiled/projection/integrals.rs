@@ -18,7 +18,7 @@ const SHORT: f64 = 1e-8;
 /// The rounding error of an integral without a bound, in units of the rounding of its terms and of its value.
 const ROUNDINGS: f64 = 4.0;
 
-/// A gradient is left out if less than this fraction of it is independent of those before it.
+/// A gradient is left out if less than this fraction of it is independent of the gradients before it.
 const DEPENDENT: f64 = 1e-10;
 
 /// First integrals I_j(t, y) of a motion, compiled with their gradients, to keep the motion at their values:
@@ -124,7 +124,7 @@ impl KeptIntegrals {
         self.room.entries.chunks_exact(at.y.len() + 1).skip(held).map(along).collect()
     }
 
-    /// Makes the values at (t, y) those to be kept.
+    /// Makes the values at (t, y) the values to be kept.
     pub(crate) fn set_levels(&mut self, at: Point<'_>) {
         let held = self.held();
         self.levels.copy_from_slice(self.values.eval(at));
@@ -141,7 +141,7 @@ impl KeptIntegrals {
         self.gradients.eval(t, y, p, &mut self.room.entries);
     }
 
-    /// Projects to I(t, y) = I_0 by Newton's method, each step being the shortest possible.
+    /// Projects onto I(t, y) = I_0 by Newton's method, each step being the shortest possible.
     ///
     /// # Errors
     /// [`EvaluationFailure::NotKept`] if the steps do not become shorter, [`EvaluationFailure::Expr`] for

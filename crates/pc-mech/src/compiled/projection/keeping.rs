@@ -9,19 +9,19 @@ use crate::equations::poincare::Equations;
 use crate::error::{IntegralError, MechError};
 use pc_expr::VectorField;
 
-/// A rate of change counts as nonzero above this fraction of the size of its terms, which is far above rounding
-/// errors.
+/// A rate of change counts as nonzero if it exceeds this fraction of the size of its terms; the fraction is far
+/// above rounding errors.
 const RATE: f64 = 1e-9;
 
 /// A rate is itself a rounding error if it changes by more than this fraction when the last digits change.
 const UNCERTAIN: f64 = 1.0 / 64.0;
 
-/// The number of such changes to the last digits, and their size.
+/// The number of trial changes to the last digits, and their size.
 const PROBES: u64 = 8;
 const LAST_DIGITS: f64 = 8.0 * f64::EPSILON;
 
-/// The number of steps along which an integral is tested, each twice the one before; the first changes the
-/// state by about this fraction, with an error far below [`RATE`].
+/// The number of steps along which an integral is tested, each twice as long as the one before; the first
+/// step changes the state by about this fraction, with an error far below [`RATE`].
 const STEPS: usize = 8;
 const FIRST_STEP: f64 = 1e-4;
 
@@ -63,17 +63,18 @@ impl<'g> Multipliers<'g> {
 }
 
 impl Motion {
-    /// The same motion with a further [projection](pc_expr::VectorField::project), after that to its
-    /// constraints: to the values of these integrals at (t, y), by the shortest path in the components of the
-    /// state. Applied after each step, it changes the state by at most the error of the step.
+    /// The same motion with a further [projection](pc_expr::VectorField::project), which comes after the
+    /// projection onto its constraints: it moves the state, by the shortest path in its components, to where
+    /// these integrals have their values at (t, y). Applied after each step, it changes the state by at most
+    /// the error of the step.
     ///
-    /// An integral is not kept at states where its gradient is linearly dependent on those before it, such as
-    /// the energy at rest. A quantity that may jump along the motion is refused: keeping it would change the
-    /// motion.
+    /// An integral is not kept at states where its gradient depends linearly on the gradients of the
+    /// integrals before it; an example is the energy at rest. A quantity that may jump along the motion is
+    /// refused: keeping it would change the motion.
     ///
     /// # Errors
-    /// [`IntegralError::NotAnIntegral`] if one of them changes along the motion at (t, y) or a little later;
-    /// errors of the equations of motion at (t, y).
+    /// [`IntegralError::NotAnIntegral`] if one of the integrals changes along the motion at (t, y) or a
+    /// little later; errors of the equations of motion at (t, y).
     ///
     /// ```
     /// use pc_mech::{Graph, System, VectorField};
@@ -101,8 +102,8 @@ impl Motion {
         Ok(self)
     }
 
-    /// Makes the values at (t, y) those to be [kept](Motion::keep) from now on: for another initial state, or
-    /// with other parameters.
+    /// Makes the values at (t, y) the ones to be [kept](Motion::keep) from now on: for another initial state,
+    /// or for other values of the parameters.
     ///
     /// # Errors
     /// As for [`keep`](Motion::keep).
@@ -141,7 +142,7 @@ impl Motion {
     }
 
     /// # Errors
-    /// [`IntegralError::NotAnIntegral`] if one of them changes at (t, y), where ẏ = `rates`.
+    /// [`IntegralError::NotAnIntegral`] if one of the integrals changes at (t, y), where ẏ = `rates`.
     fn check(
         &mut self,
         integrals: &mut KeptIntegrals,
@@ -160,7 +161,8 @@ impl Motion {
     }
 
     /// Whether the rate of change of an integral at (t, y) is due to rounding errors in ẏ: it then changes with
-    /// the last digits of the state and of the equations. Those changes are the same on every run.
+    /// the last digits of the state and of the equations. The changes made to the last digits are the same on
+    /// every run.
     fn is_uncertain(
         &mut self,
         integrals: &mut KeptIntegrals,
@@ -183,7 +185,7 @@ impl Motion {
         })
     }
 
-    /// The same motion, projected to its constraints alone.
+    /// The same motion, projected onto its constraints alone.
     pub fn without_kept(mut self) -> Motion {
         self.set_kept(None);
         self

@@ -54,7 +54,7 @@ impl Surface {
         outcome
     }
 
-    /// The range of η in a state.
+    /// The range of indices of η in a state.
     pub(super) fn moving(&self) -> std::ops::Range<usize> {
         self.coordinates..self.coordinates + self.k
     }
@@ -63,7 +63,7 @@ impl Surface {
     ///
     ///   M (η − η₀) = Cᵀ μ.
     ///
-    /// Each step to g = 0 is the shortest, but the steps together are not, and their path depends on
+    /// Each step to g = 0 is the shortest possible, but the whole path is not the shortest, and it depends on
     /// the choice of quasi-velocities. Where g is affine in η a single step leads to the nearest point.
     fn approach(
         &mut self,
@@ -124,7 +124,7 @@ impl Surface {
         eta.zip(&self.weights).map(|(eta, weight)| eta * weight.sqrt()).fold(0.0, f64::hypot)
     }
 
-    /// Two steps along g = 0: that of Newton's method to the nearest point, and the steepest direction
+    /// Two steps along g = 0: the step of Newton's method to the nearest point, and the steepest direction
     /// towards it; both are zero at that point.
     ///
     ///   (M − ∂(Cᵀμ)/∂η) δ + Cᵀ ν = −M z,   C δ = 0,   where   M z + Cᵀ μ = M (η − η₀),   C z = 0.

@@ -11,7 +11,7 @@ const ROUNDED: f64 = 4.0 * f64::EPSILON;
 /// The positions of quaternions in a state; each has |q| = 1.
 ///
 /// The equations of a joint keep |q| constant, but an integrator does so only to its tolerance, and a quaternion whose
-/// |q| is not 1 is not a rotation.
+/// |q| is not 1 does not represent a rotation.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct UnitQuaternions {
     places: Vec<[usize; 4]>,

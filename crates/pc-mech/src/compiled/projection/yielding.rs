@@ -1,4 +1,5 @@
-//! Velocities that satisfy the constraints, some of which keep their values as far as the constraints allow.
+//! Velocities that satisfy the constraints; some of the velocities keep their values as far as the
+//! constraints allow.
 
 use pc_algebra::Matrix;
 
@@ -14,11 +15,11 @@ use crate::numeric::least_squares::LeastSquares;
 const SHORT: f64 = 1e-14;
 
 impl Surface {
-    /// Moves the η of `y` to g = 0, and the `held` ones only as far as necessary: of all δη with C δη = −g it takes
-    /// those that change the held ones least, and of these the shortest, in the kinetic metric.
+    /// Moves the η of `y` to g = 0, and the `held` ones only as far as necessary: among all δη with C δη = −g, it
+    /// takes those that change the held η least, and among these the shortest, in the kinetic metric.
     ///
     /// # Errors
-    /// [`EvaluationFailure::NoProjection`] if no such steps lead there.
+    /// [`EvaluationFailure::NoProjection`] if no such steps lead to g = 0.
     pub(crate) fn project_velocities_holding(
         &mut self,
         (t, y, p): (f64, &mut [f64], &[f64]),
@@ -53,8 +54,8 @@ impl Surface {
     ///
     ///   N C_H δ_H = −N g,   C_F δ_F = −g − C_H δ_H,
     ///
-    /// where N is the projection to the combinations of constraints that C_F does not affect: the conditions on
-    /// held velocities alone.
+    /// where N is the projection onto the combinations of constraints that C_F does not affect: the conditions
+    /// on held velocities alone.
     fn least_change(
         &mut self,
         Coefficients { mass, constraints }: &Coefficients,

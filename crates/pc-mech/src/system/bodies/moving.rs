@@ -1,4 +1,4 @@
-//! The motion of bodies with a frame, and their contributions to a system.
+//! How bodies move as functions of a frame, and what they contribute to a system.
 
 use pc_algebra::Frame;
 use pc_expr::{Expr, SymbolPlaces};
@@ -11,11 +11,11 @@ use crate::system::states::check_no_state;
 pub(crate) struct Share<'g> {
     /// The kinetic energy T in terms of (t, x, η).
     pub(crate) kinetic: Expr<'g>,
-    /// The forces Q_1..Q_k, without those that follow from the force function.
+    /// The forces Q_1..Q_k, without the forces derived from the force function.
     pub(crate) forces: Vec<Expr<'g>>,
     /// The force function U(t, x), which is a term of L.
     pub(crate) force_function: Expr<'g>,
-    /// Whether each component of the force is included in U.
+    /// For each component of the force, whether it is included in U.
     pub(crate) in_lagrangian: Vec<bool>,
     /// ṙ
     pub(crate) velocity: Vec<Expr<'g>>,
@@ -28,7 +28,7 @@ pub(crate) struct Moving<'a, 'g> {
     pub(crate) frame: &'a Frame<'g>,
     pub(crate) eta: &'a [Expr<'g>],
     states: &'a [(Expr<'g>, Expr<'g>)],
-    /// Each x_i' with b_is η_s + b_i0, except those that are themselves quasi-velocities.
+    /// Each x_i' with b_is η_s + b_i0, except for velocities that are themselves quasi-velocities.
     velocities: Vec<(Expr<'g>, Expr<'g>)>,
 }
 
@@ -53,7 +53,8 @@ impl<'a, 'g> Moving<'a, 'g> {
     ///
     /// # Errors
     /// [`BodyError::OfVelocities`] if the functions depend on velocities,
-    /// [`FrameError::OfState`](crate::FrameError::OfState) if they depend on first-order states; `what` is their name.
+    /// [`FrameError::OfState`](crate::FrameError::OfState) if they depend on first-order states; messages call the
+    /// functions `what`.
     pub(crate) fn operators(
         &self,
         what: &'static str,

@@ -11,8 +11,8 @@ use crate::system::bodies::moving::{Moving, Share};
 /// Its velocity is ṙ = X_0 r + η_s X_s r, its kinetic energy ½ m |ṙ|². A force F on it, with components along
 /// the same axes, gives Q_s = F · X_s r (8); it may depend on (t, x, η), and on ẋ through the symbols `x'`. A
 /// force that depends on the position alone, is homogeneous in r and has a force function, F · X_s r = X_s U,
-/// contributes to the energy: U is added to L, and nothing to Q_s. The same holds for a single component with
-/// this property.
+/// contributes to the energy: U is added to L, and nothing is added to Q_s. The same holds for a single
+/// component with this property.
 ///
 /// ```
 /// use pc_mech::{Graph, Particle, System};
@@ -41,7 +41,7 @@ pub struct Particle<'g> {
 }
 
 impl<'g> Particle<'g> {
-    /// A particle of that mass at r(t, x).
+    /// A particle of mass m at r(t, x).
     pub fn new(
         mass: impl Into<Expr<'g>>,
         position: impl IntoIterator<Item = impl Into<Expr<'g>>>,
@@ -105,9 +105,10 @@ impl<'g> Particle<'g> {
         Ok(Share { kinetic, forces, force_function, in_lagrangian, velocity, angular_velocity: None })
     }
 
-    /// The U(t, x) for which F · X_s r = X_s U, if the force depends on the position alone. If F is homogeneous
-    /// of degree d in r, as are constant forces, springs and gravitation, U = F · r/(d + 1) by Euler's theorem:
-    /// where F · X_s r is the same multiple of X_s (F · r) for all s, its 1-form is exact.
+    /// The U(t, x) for which F · X_s r = X_s U, if the force depends on the position alone and such a U is
+    /// found. If F is homogeneous of degree d in r, as are constant forces, springs and gravitation, U = F ·
+    /// r/(d + 1) by Euler's theorem: where F · X_s r is the same multiple of X_s (F · r) for all s, its 1-form
+    /// is exact.
     fn force_function(
         &self,
         force: &[Expr<'g>],
@@ -139,15 +140,15 @@ impl<'g> Particle<'g> {
     }
 }
 
-/// The multiple of 1/12 that a quotient with rounding errors, such as one of coefficients with √2, stands for;
-/// for the usual degrees d, 1/(d + 1) is such a multiple. Any other number is returned unchanged.
+/// The multiple of 1/12 to which a quotient is equal up to rounding errors, as a quotient of coefficients with
+/// √2 may be; for the usual degrees d, 1/(d + 1) is such a multiple. Any other number is returned unchanged.
 fn simple(quotient: Number) -> Number {
     let twelfths = (12.0 * quotient.to_f64()).round();
     let is_near = (12.0 * quotient.to_f64() - twelfths).abs() <= 1e-13 * twelfths.abs();
     if is_near && twelfths.abs() < 1e6 { Number::ratio(twelfths as i64, 12) } else { quotient }
 }
 
-/// The vector with the i-th component of another one, and zeros elsewhere.
+/// The vector with the i-th component of the given vector, and zeros elsewhere.
 fn component<'g>(vector: &[Expr<'g>], i: usize) -> Vec<Expr<'g>> {
     let mut part = vec![Expr::ZERO; vector.len()];
     part[i] = vector[i];

@@ -14,8 +14,8 @@ use crate::system::bodies::particle::Particle;
 /// taken about that point. For any other point r the energy has the further term m ṙ·(ω × s), with s from r to
 /// the mass centre, which is not supported: give the mass centre.
 ///
-/// The angular velocity ω has components along axes in which I is constant, in general axes fixed in the body. It
-/// follows from a [rotation](RigidBody::rotating), or is [given](RigidBody::turning).
+/// The angular velocity ω has components along axes in which I is constant, in general axes fixed in the body.
+/// The angular velocity is derived from a [rotation](RigidBody::rotating), or is [given](RigidBody::turning).
 ///
 /// A force F at r, along the axes of r, and a torque N, along the axes of ω, give
 /// Q_s = F · X_s r + N · ∂ω/∂η_s (8).
@@ -48,8 +48,8 @@ pub struct RigidBody<'g> {
 
 /// A symmetric inertia matrix.
 ///
-/// Made of three principal moments `[Ixx, Iyy, Izz]`, or of six entries `[Ixx, Iyy, Izz, Ixy, Iyz, Ixz]`. The latter
-/// are the entries of the matrix: Ixy = −∫ xy dm.
+/// The matrix is made from three principal moments `[Ixx, Iyy, Izz]`, or from six entries
+/// `[Ixx, Iyy, Izz, Ixy, Iyz, Ixz]`. The six are the entries of the matrix, with their signs: Ixy = −∫ xy dm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inertia<'g>([Expr<'g>; 6]);
 
@@ -67,7 +67,7 @@ impl<'g, E: Into<Expr<'g>>> From<[E; 6]> for Inertia<'g> {
 }
 
 impl<'g> Inertia<'g> {
-    /// The matrix with each entry replaced by `put` of it.
+    /// The matrix with `put` applied to each entry.
     pub(crate) fn map<'n>(&self, put: impl Fn(Expr<'g>) -> Expr<'n>) -> Inertia<'n> {
         Inertia(self.0.map(put))
     }

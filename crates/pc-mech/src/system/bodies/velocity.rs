@@ -2,7 +2,7 @@
 
 use pc_expr::Expr;
 
-/// The velocities of a body: ṙ of its point and ω, affine functions of η.
+/// The velocities of a body: ṙ of its point and its ω, which are affine functions of η.
 #[derive(Clone, Debug)]
 pub struct BodyVelocity<'g> {
     pub(crate) name: String,
@@ -44,7 +44,7 @@ pub(crate) struct Bodies<'g> {
 }
 
 impl<'g> Bodies<'g> {
-    /// The same bodies with `put` applied to every expression, as it is to the Lagrangian.
+    /// The same bodies with `put` applied to every expression, including the rest of the Lagrangian.
     pub(crate) fn map<'n>(&self, put: impl Fn(&[Expr<'g>]) -> Vec<Expr<'n>>) -> Bodies<'n> {
         let moved = |body: &BodyVelocity<'g>| BodyVelocity {
             name: body.name.clone(),
