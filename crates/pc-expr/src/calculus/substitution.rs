@@ -10,8 +10,8 @@ use crate::graph::number::Number;
 use crate::graph::places::SymbolPlaces;
 use crate::graph::subgraph::{Assignment, Cone};
 
-/// Symbols with their replacements. The cost of applying it to an expression depends only on the size of that
-/// expression, however long the list is.
+/// Symbols with their replacements. The cost of applying the list to an expression depends only on the size
+/// of that expression, however long the list is.
 #[derive(Clone, Debug)]
 pub struct Substitution<'g> {
     graph: &'g Graph,

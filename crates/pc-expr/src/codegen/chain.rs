@@ -10,9 +10,9 @@ use crate::codegen::{c, rust};
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};
 
-/// Number of columns of a Jacobian that are computed together.
+/// The number of columns of a Jacobian that are computed together.
 const LANES: usize = 4;
-/// The greatest width of a line of the table.
+/// The greatest width of a line in the table.
 const WIDTH: usize = 110;
 
 /// The names in the source of a table.
@@ -62,7 +62,7 @@ fn derivative(function: Function, language: Language, [x, r]: [&str; 2]) -> Opti
     })
 }
 
-/// The function that the derivative of a function calls.
+/// The function called in the derivative of a function.
 fn called(function: Function) -> Option<Function> {
     match function {
         Function::Sin => Some(Function::Cos),

@@ -28,7 +28,7 @@ pub struct Slot {
     pub place: Place,
     /// Its meaning, as a comment after the statement; may be empty.
     pub comment: String,
-    /// A name for its value if that is used again, an identifier of the language; may be empty.
+    /// A name for its value in case that is used again: an identifier of the language; may be empty.
     pub local: String,
 }
 
@@ -43,7 +43,7 @@ pub struct Layout {
     pub skip_zeros: bool,
     /// The prefix of the [helper functions](Language::helpers); in C all names share one namespace.
     pub prefix: String,
-    /// Identifiers that no local may have, such as the name of the array of the outputs.
+    /// Identifiers that no local variable may have, such as the name of the array of the outputs.
     pub reserved: Vec<String>,
 }
 

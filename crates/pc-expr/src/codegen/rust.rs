@@ -65,8 +65,8 @@ fn library_function(function: Function) -> Option<Library> {
     Some(Library { name: function.name(), arguments, std, libm })
 }
 
-/// The functions that neither `std` nor `libm` has, which return the values of [`Function::eval`], and the module
-/// `math`.
+/// The module `math`, and the functions that neither `std` nor `libm` has; they return the values of
+/// [`Function::eval`].
 pub(crate) fn helpers(calls: &Calls) -> String {
     let mut text = String::new();
     let mut library = Vec::new();
