@@ -11,8 +11,8 @@ use crate::program::program::{Instruction, Program, Register};
 const LONG: usize = 80;
 /// A sum written over several lines may become this long before its first part gets a name.
 const LONG_SUM: usize = 320;
-/// In programs with more operations than this, `const` is left out of declarations, which are a tenth of the
-/// text.
+/// In C programs with more operations than this, `const` is left out of the declarations, which are a tenth
+/// of the text.
 const MANY: usize = 2000;
 /// Comments longer than this are cut.
 const LONGEST_COMMENT: usize = 60;

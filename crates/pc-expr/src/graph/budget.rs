@@ -33,7 +33,7 @@ impl Budget {
         Budget(Arc::new(Meter::new(self.0.limits.clone(), self.0.deadline.clone())))
     }
 
-    /// The limits with which it was made.
+    /// The limits with which this budget was made.
     pub fn limits(&self) -> &Limits {
         &self.0.limits
     }

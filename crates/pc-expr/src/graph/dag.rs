@@ -46,7 +46,7 @@ pub(crate) struct Dag {
     /// The arguments of roots and the like in the node, which bound the region where it has a value.
     pub(super) limits: Vec<Divisors>,
     pub(super) divisor_sets: DivisorSets,
-    /// The node that stands for this one, if a better one of the same value (up to sign) was found later.
+    /// The node that replaces this one, if a better one with the same value (up to sign) was found later.
     successor: Vec<Option<(NodeId, Number)>>,
     terms: Vec<(NodeId, Number)>,
     factors: Vec<(NodeId, i32)>,
@@ -162,7 +162,7 @@ impl Dag {
         }
     }
 
-    /// The symbol of that name, created if it is new.
+    /// The symbol with that name, created if it is new.
     pub(crate) fn symbol(&mut self, name: &str) -> NodeId {
         let candidate = Candidate::Symbol(name);
         self.find(&candidate).unwrap_or_else(|| {
@@ -212,7 +212,7 @@ impl Dag {
     /// worse, the shorter one is better. Two forms, each with a divisor that the other lacks, stay separate
     /// nodes; so do two forms if one contains a [confined](Dag::confine) symbol.
     ///
-    /// Once the budget is spent the result is undefined, so that the work ends soon.
+    /// Once the budget is spent, the result is undefined, so that the work ends soon.
     pub(super) fn admit(&mut self, candidate: &Candidate<'_>) -> Atom {
         self.asked = self.asked.wrapping_add(1);
         let looks = self.asked == 0;

@@ -25,7 +25,7 @@ pub trait Scalar: Copy + Add<Output = Self> + Mul<Output = Self> + Neg<Output = 
     /// x^exponent
     #[must_use]
     fn powi(self, exponent: i32) -> Self;
-    /// The value of the function at `args`, as many as its arity.
+    /// The value of the function at `args`, whose number is the arity of the function.
     fn call(function: Function, args: &[Self]) -> Self;
 }
 

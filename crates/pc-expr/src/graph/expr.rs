@@ -55,7 +55,7 @@ impl<'g> Expr<'g> {
         matches!(self.atom, Atom::Constant(c) if !c.is_finite())
     }
 
-    /// The leading numerical factor, 1 if there is none; that of a constant is the constant itself.
+    /// The leading numerical factor, 1 if there is none; for a constant, the constant itself.
     ///
     /// ```
     /// # use pc_expr::{Graph, Number};
@@ -116,7 +116,7 @@ impl<'g> Expr<'g> {
         id
     }
 
-    /// The function applied to the first of `args`, as many as its arity.
+    /// The function applied to the first n of `args`, where n is its arity.
     ///
     /// # Panics
     /// If there are fewer arguments.
@@ -204,13 +204,13 @@ impl<'g> Expr<'g> {
 }
 
 impl Graph {
-    /// The symbol of that name; the same name always gives the same symbol.
+    /// The symbol with that name; the same name always gives the same symbol.
     pub fn symbol(&self, name: &str) -> Expr<'_> {
         let node = self.with(|dag| dag.symbol(name));
         self.expr(Atom::Node(node))
     }
 
-    /// The symbols of those names.
+    /// The symbols with those names.
     pub fn symbols<const N: usize>(&self, names: [&str; N]) -> [Expr<'_>; N] {
         names.map(|name| self.symbol(name))
     }

@@ -54,7 +54,7 @@ impl Graph {
         Graph { dag: RefCell::new(Dag::new(folding, Some(budget.meter()))), budget }
     }
 
-    /// An empty graph with the same folding as this one, which draws on a budget that others may share.
+    /// An empty graph with the same folding as this one; it draws on a budget that others may share.
     #[must_use]
     pub fn within(self, budget: &Budget) -> Graph {
         Graph::of(self.folding(), budget.clone())

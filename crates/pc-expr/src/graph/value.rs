@@ -12,8 +12,8 @@ use crate::identity::roots::Value;
 const FRACTION: i32 = 12;
 /// The largest such integer.
 const MAX_MULTIPLE: i32 = 100 * FRACTION;
-/// Sums inside the argument of a sine or exponential are opened up to this many terms; the remainder counts
-/// as one term.
+/// Sums inside the argument of a sine or exponential are flattened up to this many terms; the remainder
+/// counts as one term.
 const MAX_TERMS: usize = 1 << 14;
 
 /// A term m/12·z of the argument of a sine or exponential.
@@ -219,7 +219,7 @@ impl Dag {
         PowerProduct { known, rest }
     }
 
-    /// log u = Σ e log f over its powers; including log √f = ½ log f and log e^f = f.
+    /// log u = Σ e log f over the powers f^e of u, including log √f = ½ log f and log e^f = f.
     fn logarithm(&mut self, u: NodeId) -> Value {
         let (c, mut factors) = self.factors_of(u);
         let mut sum = Vec::new();
@@ -263,8 +263,8 @@ impl Dag {
         self.roots_mut().power(&base, whole).scaled(unknown)
     }
 
-    /// (cos u, sin u) by the group law of the circle from one point for each term of u: a random one, or that of the
-    /// angle with a known sine, cosine or tangent.
+    /// (cos u, sin u) by the group law of the circle from one point for each term of u: a random point, or the point
+    /// of an angle whose sine, cosine or tangent is known.
     fn circle_point(&mut self, u: NodeId) -> CirclePoint {
         let mut point = CirclePoint::zero();
         for LinearTerm { node, z, m } in self.linear_terms(u) {

@@ -219,8 +219,8 @@ fn fraction(x: Residue) -> Number {
     found
 }
 
-/// The vector without common factor and denominators, as far as these stay exact; the first entry is
-/// positive.
+/// The vector with denominators and common factors removed, as far as its entries stay exact; the first entry
+/// is positive.
 fn whole(vector: &[Number]) -> Vec<Number> {
     let mut entries = vector.iter().copied().filter(|a| !a.is_zero());
     let Some(first) = entries.next() else { return vector.to_vec() };

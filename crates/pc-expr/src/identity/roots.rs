@@ -32,7 +32,7 @@ impl Monomial {
 #[derive(Clone, Debug)]
 pub(crate) struct Value {
     pub(crate) fingerprint: Fingerprint,
-    /// In the order of the monomials, each once.
+    /// The terms in the order of their monomials, each of which occurs once.
     terms: Option<Terms>,
 }
 

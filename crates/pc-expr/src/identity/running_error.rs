@@ -67,7 +67,7 @@ impl Weighed {
         self.is_finite() && !self.lost
     }
 
-    /// f(a), weighed by its change with each of its arguments.
+    /// f(a), weighed by how much it changes with each of its arguments.
     fn of<const N: usize>(args: [Weighed; N], f: impl Fn([f64; N]) -> f64) -> Weighed {
         let at = args.map(|arg| arg.value);
         let value = f(at);

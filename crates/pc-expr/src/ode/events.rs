@@ -108,8 +108,9 @@ pub trait Events {
     /// [`Failure`] where one is not defined; it ends the integration.
     fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure>;
 
-    /// The program whose outputs are the first functions, of (t, y) and parameters, with the values of these,
-    /// if there is one. Methods that have the motion as a function of time find all roots of these functions.
+    /// The program whose outputs are the first of the functions g, in terms of (t, y) and parameters, with
+    /// the values of these parameters, if there is such a program. Methods that have the motion as a function
+    /// of time find all roots of these functions.
     fn program(&self) -> Option<(&Arc<Program>, &[f64])> {
         None
     }

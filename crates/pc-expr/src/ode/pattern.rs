@@ -67,8 +67,8 @@ impl Pattern {
         self.len() == self.rows * self.columns()
     }
 
-    /// The index at which the entries of each column start, then the number of all entries: columns + 1
-    /// numbers.
+    /// The index at which the entries of each column start, followed by the number of all entries: columns +
+    /// 1 numbers in total.
     pub fn column_starts(&self) -> &[usize] {
         &self.starts
     }

@@ -15,8 +15,8 @@ const ADDS_UP: f64 = 1e-9;
 /// Maximum number of steps of Newton's method.
 const MOST_STEPS: usize = 50;
 
-/// The motion that slides along some surfaces by Filippov's combination [Filippov 1988, § 4]: with f± on the two sides
-/// of g = 0,
+/// The motion that slides along some surfaces given by Filippov's combination [Filippov 1988, § 4]: with f± on the two
+/// sides of g = 0,
 /// ```text
 /// ẏ = (1 + σ)/2 f⁺ + (1 − σ)/2 f⁻,   g_t + g_y ẏ = 0,   |σ| ≤ 1.
 /// ```
@@ -132,8 +132,8 @@ fn rate(
     Ok(normal.iter().zip(&rates).fold(by_time, |sum, (slope, rate)| sum + slope * rate))
 }
 
-/// The derivatives of dg/dt with respect to time and state, above the surfaces whose sides are 0, as
-/// difference quotients.
+/// The derivatives of dg/dt with respect to time and state, as difference quotients, on the positive side of
+/// the surfaces whose sides are 0.
 fn second_normal(
     field: &mut (impl Switching + ?Sized),
     surface: usize,

@@ -239,7 +239,7 @@ pub trait VectorField {
     /// step: a field may have barriers that no motion crosses.
     ///
     /// # Errors
-    /// [`Failure`] if the second does not follow from the first.
+    /// [`Failure`] if no motion leads from the first to the second.
     fn leads(&mut self, _from: (f64, &[f64]), _to: (f64, &[f64])) -> Result<(), Failure> {
         Ok(())
     }

@@ -79,7 +79,7 @@ struct Parser<'i> {
     /// The next token and its position.
     token: Token<'i>,
     span: Span,
-    /// Position of the token before it.
+    /// Position of the token before the next one.
     last: Span,
     depth: usize,
 }

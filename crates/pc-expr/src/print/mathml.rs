@@ -20,7 +20,7 @@ const TIMES: &str = "<mo>&#x2062;</mo>";
 /// Between a function and an argument without brackets.
 const BARE: &str = "<mo>&#x2061;</mo><mspace width=\"0.17em\"/>";
 
-/// Functions whose power is written after their names.
+/// Functions whose exponents are written after their names.
 const RAISED: [Function; 6] =
     [Function::Sin, Function::Cos, Function::Sinh, Function::Cosh, Function::Tanh, Function::Log];
 
@@ -51,7 +51,8 @@ fn letters(text: &str) -> String {
     }
 }
 
-/// A character as text of a page: names of reactions contain those of constraints, which may be any text.
+/// A character, escaped for the text of a page: names of reactions contain those of constraints, which may be
+/// any text.
 fn character(c: char) -> String {
     match c {
         '<' => "&lt;".to_owned(),

@@ -21,7 +21,7 @@ impl Expr<'_> {
     /// The text in a style other than [`Display`](fmt::Display)'s.
     ///
     /// It is complete: parts of a long expression are defined after it, `z1 + 1/z1 where z1 = …`.
-    /// [`Graph::names`](crate::Graph::names) prints several expressions with common names.
+    /// [`Graph::names`](crate::Graph::names) prints several expressions with shared names for their parts.
     pub fn display(self, style: Style) -> String {
         let Some(graph) = self.graph() else {
             return match self.atom() {

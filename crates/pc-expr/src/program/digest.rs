@@ -24,7 +24,7 @@ impl Digest {
         self.0
     }
 
-    /// Adds a name and its end.
+    /// Adds a name and a mark at its end.
     pub fn name(&mut self, name: &str) {
         let _ = write!(self, "{name}\0"); // writing to it cannot fail
     }

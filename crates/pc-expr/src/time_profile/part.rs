@@ -226,7 +226,7 @@ impl Part {
         })
     }
 
-    /// The value of a register there.
+    /// The value of a register where the part was last enclosed.
     pub(crate) fn at(&self, register: usize) -> Jet {
         self.registers[register]
     }

@@ -77,7 +77,7 @@ struct Track {
     sharp: Option<f64>,
 }
 
-/// The last nonzero sign of a derivative, and up to where it is known.
+/// The last nonzero sign of a derivative, and the time up to which the sign is known.
 #[derive(Clone, Copy, Debug)]
 struct Sign {
     sign: i8,

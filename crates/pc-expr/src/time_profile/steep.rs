@@ -18,7 +18,7 @@ use crate::program::program::{Instruction, Program, Register};
 const LONGEST: usize = 256;
 /// A function that is never 0 and changes by less than this factor hides nothing.
 const FACTOR: f64 = 10.0;
-/// Nor does a function with the range from −1 to 1 that changes by less than this.
+/// A function with values from −1 to 1 that changes by less than this hides nothing either.
 const CHANGE: f64 = 0.5;
 
 /// The evidence that a function hides nothing in an interval.

@@ -23,8 +23,8 @@ pub(super) enum Area {
 }
 
 impl Area {
-    /// Number of windows with a register; memory beyond them is addressed from the last one.
-    /// Together they leave registers free.
+    /// Number of windows with a register; memory beyond these windows is addressed from the last one.
+    /// The windows of all areas together leave some registers free.
     fn windows(self) -> u32 {
         match self {
             Area::Scratch => 6,

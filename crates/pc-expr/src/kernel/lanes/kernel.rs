@@ -10,8 +10,8 @@ use super::tape::{LANES, LaneTape, Lanes};
 
 /// A [`LaneTape`] that can be run, by machine code if it is available for this processor.
 ///
-/// The results of a lane depend only on its own inputs, bit for bit the same whatever the other lanes
-/// hold and on any processor; only functions that are not computed inline depend on the system's
+/// The results of a lane depend only on its own inputs: they are the same, bit for bit, whatever the other
+/// lanes hold and on any processor; only functions that are not computed inline depend on the system's
 /// library. (The bits of a NaN may differ.) Clones share the code.
 #[derive(Clone, Debug)]
 pub struct LaneKernel {
@@ -104,8 +104,7 @@ impl LaneKernel {
         }
     }
 
-    /// Computes the lanes of a vector again, at least one of which is outside the range of inline
-    /// functions.
+    /// Computes the lanes of a vector again if at least one of them is outside the range of inline functions.
     #[cfg(all(feature = "jit", target_arch = "x86_64", unix))]
     #[cold]
     fn again(&self, frame: &mut [Lanes], first: usize, width: usize) {

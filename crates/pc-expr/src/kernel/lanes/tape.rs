@@ -3,7 +3,7 @@
 //! The results of all operations are determined to the last bit: the four arithmetic operations,
 //! square roots and fused multiply-add, each rounded once; comparisons, and operations on the bits.
 //! Functions are composed of them in the same way for every kernel. So the result of a lane depends
-//! only on its own inputs: neither on the other lanes nor on the instructions of the processor.
+//! only on its own inputs: it does not depend on the other lanes or on the instructions of the processor.
 
 use rustc_hash::FxHashMap;
 

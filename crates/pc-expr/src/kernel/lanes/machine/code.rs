@@ -63,8 +63,8 @@ impl Code {
         self.memory.len()
     }
 
-    /// Runs the code; for each vector with a lane out of range calls `again` with its first lane
-    /// and its width, while the inputs are still unchanged.
+    /// Runs the code; for each vector with a lane out of range calls `again` with the first lane and the
+    /// width of that vector, while the inputs are still unchanged.
     ///
     /// # Panics
     /// If the frame has too few rows.
