@@ -31,7 +31,7 @@ pub struct ChainLayout {
 pub struct Chain {
     /// The table, and the function that computes values.
     pub support: String,
-    /// The functions called there and in the derivatives.
+    /// The functions called in the support code and in the derivatives.
     pub calls: Calls,
     places: Vec<usize>,
     values: usize,

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use crate::graph::deadline::Deadline;
 use crate::graph::limits::{Limits, Spent};
 
-/// The memory and time that remain within some limits. Clones share one budget, as do graphs
+/// The memory and time that remain within the given limits. Clones share one budget, as do graphs
 /// [within](crate::Graph::within) it. Once it is spent, no graph creates further expressions, and
 /// derivations in them end in [`ExprError::Spent`](crate::ExprError::Spent).
 ///

@@ -15,7 +15,7 @@ use crate::graph::number::Number;
 use crate::identity::fingerprint::Fingerprint;
 use crate::identity::roots::{Roots, Terms, Value};
 
-/// The bit shared by symbols that are confined to the expressions made with them.
+/// The bit shared by all symbols that are confined to the expressions made with them.
 const CONFINED: u64 = 1 << 63;
 
 #[derive(Debug)]
@@ -371,7 +371,7 @@ impl Dag {
         id
     }
 
-    /// Whether a candidate costs less than a node, or costs as much and contains fewer symbols.
+    /// Whether a candidate costs less than a node, or costs the same but contains fewer symbols.
     fn is_shorter(&self, candidate: &Candidate<'_>, node: NodeId) -> bool {
         let (ours, theirs) = (self.symbols_of(candidate), self.symbols[node.index()]);
         let without = ours & theirs == ours && ours != theirs;

@@ -1,7 +1,7 @@
 //! The rules by which sums and products are normalised as they are built.
 //!
-//! A sum is a linear combination c + Σ qᵢ nᵢ with rational coefficients, and a product is a power product Π
-//! nᵢ^eᵢ with integer exponents; rational factors of products are kept in the sum around them.
+//! A sum is a linear combination c + Σ qᵢ nᵢ with rational coefficients, and a product is of the form Π nᵢ^eᵢ
+//! with integer exponents; rational factors of products are kept in the sum around them.
 
 use crate::graph::dag::Dag;
 use crate::graph::function::Function;

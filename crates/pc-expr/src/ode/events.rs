@@ -60,12 +60,12 @@ impl Event {
         self.direction(Direction::Falling)
     }
 
-    /// Whether the integration ends there.
+    /// This event; `terminal` says whether the integration ends at it.
     pub fn terminal(self, terminal: bool) -> Event {
         Event { terminal, ..self }
     }
 
-    /// Whether [`Events::reset`] changes the state there.
+    /// This event; `resets` says whether [`Events::reset`] changes the state at it.
     pub fn resetting(self, resets: bool) -> Event {
         Event { resets, ..self }
     }
@@ -80,12 +80,12 @@ impl Event {
         self.direction
     }
 
-    /// Whether the integration ends there.
+    /// Whether the integration ends at the event.
     pub fn is_terminal(&self) -> bool {
         self.terminal
     }
 
-    /// Whether it resets the state.
+    /// Whether the event resets the state.
     pub fn resets(&self) -> bool {
         self.resets
     }
@@ -105,7 +105,7 @@ pub trait Events {
     /// Writes g_i(t, y) to `values`, one for each event.
     ///
     /// # Errors
-    /// [`Failure`] where one is not defined; it ends the integration.
+    /// [`Failure`] where one of the functions is not defined; the failure ends the integration.
     fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure>;
 
     /// The program whose outputs are the first of the functions g, in terms of (t, y) and parameters, with
@@ -127,7 +127,7 @@ pub trait Events {
     /// Called only if [they exist](Events::has_parameter_derivatives), for sensitivities.
     ///
     /// # Errors
-    /// [`Failure`] where one is not defined; it ends the integration.
+    /// [`Failure`] where a derivative is not defined; the failure ends the integration.
     fn by_parameter(
         &mut self,
         _event: usize,
@@ -150,7 +150,7 @@ pub trait Events {
     /// Called only if [they exist](Events::has_derivatives), for sensitivities.
     ///
     /// # Errors
-    /// [`Failure`] where one is not defined; it ends the integration.
+    /// [`Failure`] where a derivative is not defined; the failure ends the integration.
     fn gradient(
         &mut self,
         _event: usize,
@@ -167,7 +167,7 @@ pub trait Events {
     /// Called only if [they exist](Events::has_derivatives), for sensitivities.
     ///
     /// # Errors
-    /// [`Failure`] where one is not defined; it ends the integration.
+    /// [`Failure`] where a derivative is not defined; the failure ends the integration.
     fn reset_along(
         &mut self,
         _event: usize,
@@ -182,7 +182,7 @@ pub trait Events {
     /// Turns y⁻ into y⁺ at event number `event`; called only if that event [resets](Event::resets) the state.
     ///
     /// # Errors
-    /// [`Failure`] where the new state is not defined; it ends the integration.
+    /// [`Failure`] where the new state is not defined; the failure ends the integration.
     fn reset(&mut self, _event: usize, _t: f64, _y: &mut [f64]) -> Result<(), Failure> {
         Ok(())
     }

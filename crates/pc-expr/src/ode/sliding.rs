@@ -15,8 +15,8 @@ const ADDS_UP: f64 = 1e-9;
 /// Maximum number of steps of Newton's method.
 const MOST_STEPS: usize = 50;
 
-/// The motion that slides along some surfaces given by Filippov's combination [Filippov 1988, § 4]: with f± on the two
-/// sides of g = 0,
+/// The motion that slides along some surfaces, given by Filippov's combination [Filippov 1988, § 4]: with f± on the
+/// two sides of g = 0,
 /// ```text
 /// ẏ = (1 + σ)/2 f⁺ + (1 − σ)/2 f⁻,   g_t + g_y ẏ = 0,   |σ| ≤ 1.
 /// ```

@@ -134,15 +134,15 @@ pub trait VectorField {
         Ok(())
     }
 
-    /// The explicit dependence of f on t, whose features an integrator must not step over. It is
-    /// queried when an integration begins.
+    /// The explicit dependence of f on t, whose features an integrator must not step over. Integrators query
+    /// this dependence when an integration begins.
     fn time_dependence(&self) -> TimeDependence {
         TimeDependence::Unknown
     }
 
     /// The functions of the state in f whose rise and fall a step may miss, with f [held](VectorField::switching)
-    /// on one side if possible; `None` if there are no such functions, or if f does not expose them. They are
-    /// queried when an integration begins.
+    /// on one side if possible; `None` if there are no such functions, or if f does not expose them.
+    /// Integrators query these functions when an integration begins.
     fn steep_functions(&self) -> Option<SteepFunctions> {
         None
     }

@@ -26,7 +26,7 @@ pub enum ParseErrorKind {
     ExpectedExpression {
         /// The token found there, in words.
         found: String,
-        /// Whether it is the second star of `**`.
+        /// Whether that token is the second star of `**`.
         power: bool,
     },
     /// A character that has no meaning in an expression.

@@ -64,9 +64,9 @@ pub struct Name<'g> {
     pub name: String,
     /// Its value.
     pub value: Expr<'g>,
-    /// Whether it is one of those [`Given`] as a shorthand.
+    /// Whether the name was [`Given`] as a shorthand.
     pub shorthand: bool,
-    /// The number of the first line that uses it.
+    /// The number of the first line that uses the name.
     pub line: usize,
 }
 

@@ -26,7 +26,8 @@ use crate::program::program::Program;
 /// ```
 ///
 /// Where f contains |x|, sign, min, max or step, the series is that of one branch, given by the sign of each of
-/// the [branch functions](TaylorSeries::branches). It is the motion until one of these changes sign.
+/// the [branch functions](TaylorSeries::branches). The series is that of the motion until one of these
+/// functions changes sign.
 pub struct TaylorSeries {
     recurrences: Arc<Recurrences>,
     zeroth: Box<dyn Kernel>,

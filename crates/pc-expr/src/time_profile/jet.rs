@@ -17,7 +17,7 @@ impl Jet {
         Jet::line(Interval::point(x), 0.0)
     }
 
-    /// A function that goes through `value` at this rate.
+    /// A function that passes through `value` at this rate.
     pub(crate) fn line(value: Interval, rate: f64) -> Jet {
         Jet { value, rate: Interval::point(rate), bend: Interval::ZERO }
     }

@@ -12,7 +12,7 @@ const PIECES: u32 = 32;
 /// A function that on a piece neither is monotonic nor bends only one way may vary there by this fraction
 /// of its range without closer examination.
 const FLAT: f64 = 1.0 / 64.0;
-/// The same for a function with one of the two properties: it has one turn or one inflection there.
+/// The same fraction for a function with one of the two properties: it has one turn or one inflection there.
 const TURN: f64 = 0.25;
 /// A rise or fall is a piece on which a monotonic function changes by at least this fraction of its range.
 const RISE: f64 = 2.0 / PIECES as f64;

@@ -10,11 +10,11 @@ const FEW: usize = 32;
 /// Times of features that are invisible at the two ends of an interval, in order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surprises {
-    /// Features of functions with at most 32 of them.
+    /// Times of the features of functions that have at most 32 features.
     pub few: Vec<f64>,
-    /// Features of functions with more, such as fast oscillations.
+    /// Times of the features of functions that have more, such as fast oscillations.
     pub many: Vec<f64>,
-    /// The time up to which they are known, if it is not the end of the interval.
+    /// The time up to which the features are known, if that is not the end of the interval.
     pub until: Option<f64>,
     /// Whether some function of t turns faster than floating-point times can resolve.
     pub noise: bool,
