@@ -61,8 +61,8 @@ impl Graph {
     }
 
     /// A long sum whose terms fall into groups with no variables in common, with each group collected on its
-    /// own: the cost of collecting by all variables in turn is quadratic in their number. `None` if the
-    /// result is not shorter, or e is not a sum.
+    /// own: the cost of collecting by one variable after the other is quadratic in their number. `None` if
+    /// the result is not shorter, or e is not a sum.
     fn collect_apart<'g>(
         &'g self,
         e: Expr<'g>,

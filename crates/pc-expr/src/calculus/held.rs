@@ -24,7 +24,7 @@ pub struct Held<'g> {
 pub struct Surface<'g> {
     /// Vanishes there.
     pub function: Expr<'g>,
-    /// Its sign: 1 or −1.
+    /// The sign of the function: 1 or −1.
     pub side: Expr<'g>,
 }
 
@@ -35,8 +35,8 @@ impl Graph {
     /// sign(g) = s,   |g| = s g,   step(g, a, b) = step(s, a, b),   min(a, b) = step(s, b, a) with g = a − b,
     /// atan(u/v) = atan2(s u, s v) with g = v
     /// ```
-    /// The surfaces of a product are those of its factors. Expressions that are not piecewise stay as they
-    /// are.
+    /// The surfaces of a product are the surfaces of its factors. Expressions that are not piecewise stay as
+    /// they are.
     ///
     /// ```
     /// # use pc_expr::Graph;

@@ -130,10 +130,10 @@ impl Graph {
         })
     }
 
-    /// `outputs` written without the symbols outside `known` on which they do not depend. Such a symbol
-    /// cancels; it may still appear if a result has the value of an older and cheaper expression that
-    /// contains it. If constants are rounded, a symbol counts as cancelling if the derivative with respect to
-    /// it is no more than [rounding error](crate::Weighed::rest).
+    /// `outputs` written without the symbols outside `known` on which they do not depend. A symbol that
+    /// cancels may still appear if a result has the value of an older and cheaper expression that contains
+    /// it. If constants are rounded, a symbol counts as cancelling if the derivative with respect to it is no
+    /// more than [rounding error](crate::Weighed::rest).
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -256,8 +256,8 @@ impl Graph {
         })
     }
 
-    /// Whether the divisors of the first expression vanish only where those of the second do, judged by their
-    /// factors.
+    /// Whether the divisors of the first expression vanish only where the divisors of the second do, judged
+    /// by the factors of both.
     ///
     /// ```
     /// # use pc_expr::Graph;

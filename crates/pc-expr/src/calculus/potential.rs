@@ -30,7 +30,7 @@ impl Graph {
     /// F with ∂F/∂z_i = f_i, if the `form` f_i dz_i is exact and F is found: a combination with rational
     /// coefficients of products of powers, sines, cosines, exponentials and logarithms like those in the f_i.
     ///
-    /// It is proved that F has this gradient. An exact form may go unrecognised.
+    /// The result is proved to have this gradient. An exact form may go unrecognised.
     ///
     /// # Panics
     /// If there are not as many components as variables.

@@ -295,7 +295,7 @@ impl Dag {
         Some(self.sum_of(&all))
     }
 
-    /// The sum with its common factors in front of a bracket, if there are any.
+    /// The sum with its common factors in front of brackets, if there are common factors.
     pub(super) fn before_brackets(&mut self, constant: Number, terms: &[Term]) -> Option<Atom> {
         let (first, rest) = terms.split_first().filter(|_| constant.is_zero())?;
         let common = rest.iter().fold(first.factors.clone(), |common, term| shared(&common, &term.factors));

@@ -40,7 +40,7 @@ pub struct Chain {
 }
 
 /// The text of the derivative of a function in terms of its argument `x` and its value `r`, if there is a
-/// rule for it.
+/// rule for that function.
 fn derivative(function: Function, language: Language, [x, r]: [&str; 2]) -> Option<String> {
     let call = |f: Function, x: &str| match language {
         Language::C => c::call(f, x, ""), // the library has all of them

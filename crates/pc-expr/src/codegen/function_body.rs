@@ -81,7 +81,7 @@ impl Piece {
         (format!("({})", self.text()), self.depth + 1)
     }
 
-    /// This sum with one more term.
+    /// This sum with one term added.
     fn and(mut self, sign: char, term: &Piece) -> Piece {
         // A term added or subtracted as a whole keeps its brackets.
         let (text, depth) = term.right(Binding::Product);

@@ -26,9 +26,10 @@ pub enum Place {
 pub struct Slot {
     /// Where the output is put.
     pub place: Place,
-    /// Its meaning, as a comment after the statement; may be empty.
+    /// The meaning of the output, as a comment after the statement; may be empty.
     pub comment: String,
-    /// A name for its value in case that is used again: an identifier of the language; may be empty.
+    /// A name for the value of the output in case that value is used again: an identifier of the language;
+    /// may be empty.
     pub local: String,
 }
 

@@ -36,7 +36,8 @@ pub(crate) fn string(text: &str) -> String {
     format!("{text:?}")
 }
 
-/// A function of the module `math`: its name there, its expression with `std`, and its name in `libm`.
+/// A function of the module `math`: its name in that module, its expression with `std`, and its name in
+/// `libm`.
 struct Library {
     name: &'static str,
     arguments: &'static str,

@@ -53,7 +53,7 @@ pub(crate) struct Dag {
     names: Vec<String>,
     by_structure: HashTable<NodeId>,
     pub(super) by_value: HashTable<NodeId>,
-    /// Numerators of the divisions by zero so far.
+    /// The numerators of all divisions by zero so far.
     pub(super) zero_divisions: Vec<Atom>,
 }
 
@@ -393,7 +393,8 @@ impl Dag {
     }
 
     /// The number of operations of a candidate written out as a tree: n − 1 additions or multiplications
-    /// for n operands, plus those of coefficients and powers; a division counts four, a call ten.
+    /// for n operands, plus the operations for coefficients and powers; a division counts as four operations,
+    /// a call as ten.
     fn cost_of(&self, candidate: &Candidate<'_>) -> u32 {
         let sum = |costs: &mut dyn Iterator<Item = u32>| costs.fold(0u32, u32::saturating_add);
         match *candidate {

@@ -108,7 +108,8 @@ impl Number {
         }
     }
 
-    /// The value of the number in each of two prime fields; it does not depend on the random points there.
+    /// The value of the number in each of two prime fields; this value does not depend on the random points
+    /// in the fields.
     pub(crate) fn fingerprint(self) -> Fingerprint {
         match self {
             Number::Rational { num, den: 1 } => Fingerprint::integer(num),

@@ -30,7 +30,7 @@ impl Graph {
     }
 
     /// The expression x, kept as a unit in all sums and products made from it from now on. This suits the
-    /// result of a step in a recursion, which is to be computed only once. Otherwise a sum of sums becomes
+    /// result of a step in a recursion if it is to be computed only once. Otherwise a sum of sums becomes
     /// one sum, which is shorter to read but takes longer to compute.
     ///
     /// ```

@@ -19,8 +19,8 @@ const CHANGE: f64 = 1e-12;
 ///
 ///   w(a + b) = w(a) + w(b),   w(a b) = max(|a b|, |a| w(b), w(a) |b|),   w(f(a)) = max(|f|, |f'| w(a)),
 ///
-/// where in a sum w is at least the absolute value. It is a running error analysis \[N. J. Higham, *Accuracy
-/// and Stability of Numerical Algorithms*, 2002, § 3.3\] without the number of operations.
+/// where in a sum w is at least the absolute value. This is a running error analysis \[N. J. Higham,
+/// *Accuracy and Stability of Numerical Algorithms*, 2002, § 3.3\] without the number of operations.
 ///
 /// ```
 /// # use pc_expr::{Graph, Scalar, Weighed};

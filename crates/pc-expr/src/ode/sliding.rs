@@ -35,7 +35,7 @@ pub struct Sliding {
     pub weights: Vec<f64>,
     /// For each surface, the change of dg/dt with its σ: negative where f leads back to the surface.
     pub slopes: Vec<f64>,
-    /// For each surface where the slope is the change of d²g/dt² instead, the value of dg/dt there.
+    /// For each surface whose slope is the change of d²g/dt² instead, the value of dg/dt on it.
     pub resting: Vec<Option<f64>>,
     /// ẏ
     pub rates: Vec<f64>,

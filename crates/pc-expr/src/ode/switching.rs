@@ -6,12 +6,12 @@ use crate::ode::failure::Failure;
 use crate::program::program::Program;
 use crate::time_profile::profile::TimeDependence;
 
-/// A vector field that changes from one smooth piece to the next on surfaces g(t, y, p) = 0: it jumps there or has a
-/// corner.
+/// A vector field that changes from one smooth piece to the next on surfaces g(t, y, p) = 0, on which it jumps or
+/// has a corner.
 ///
-/// An integrator holds it on one side of each surface during a step, so that f is smooth along the step, ends the step
-/// where a surface is reached, and decides there how the motion continues: on the other side, or along the surface if
-/// f leads back to it from both sides.
+/// An integrator holds the field on one side of each surface during a step, so that f is smooth along the step, ends
+/// the step where a surface is reached, and decides there how the motion continues: on the other side, or along the
+/// surface if f leads back to it from both sides.
 ///
 /// A side is 1 or −1, the sign of g, or 0 while the motion slides along the surface.
 pub trait Switching {

@@ -12,7 +12,7 @@ use crate::time_profile::steep::SteepFunctions;
 
 /// A first-order system ẏ = f(t, y) of [`dim`](VectorField::dim) equations.
 ///
-/// It is implemented by compiled equations of motion and by users; integrators need nothing else.
+/// This trait is implemented by compiled equations of motion and by users; integrators need nothing else.
 pub trait VectorField {
     /// Number of components of y.
     fn dim(&self) -> usize;
@@ -150,7 +150,7 @@ pub trait VectorField {
     /// The Taylor series of the motion, ready to be expanded, with its branch functions and its cost.
     ///
     /// # Errors
-    /// [`Failure`] with the reason why there is none: f has to be a program.
+    /// [`Failure`] with the reason why there is no series: f has to be a program.
     fn series(&mut self) -> Result<&TaylorSeries, Failure> {
         Err(Failure::fatal(NoSeries))
     }
@@ -229,8 +229,8 @@ pub trait VectorField {
     }
 
     /// The surfaces, as far as they are known, on which f jumps as the state passes them, or as t passes them at a
-    /// time that depends on parameters. Jumps at a [break](VectorField::breaks) are not included, nor those where f is
-    /// [held](VectorField::switching).
+    /// time that depends on parameters. Jumps at a [break](VectorField::breaks), and jumps on surfaces where f is
+    /// [held](VectorField::switching), are not included.
     fn jumps(&self) -> &[RateJump] {
         &[]
     }

@@ -24,7 +24,7 @@ pub enum ParseErrorKind {
     /// An operand is missing.
     #[error("expected an expression, found {found}")]
     ExpectedExpression {
-        /// The token found there, in words.
+        /// The token found in its place, in words.
         found: String,
         /// Whether that token is the second star of `**`.
         power: bool,

@@ -116,7 +116,7 @@ impl<'d> Writer<'d> {
         positive_first(signed)
     }
 
-    /// An expression as part of others.
+    /// An expression as part of other expressions.
     pub(super) fn atom(&self, atom: Atom) -> Piece {
         match atom {
             Atom::Constant(c) => self.style.number(c),

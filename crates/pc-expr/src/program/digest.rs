@@ -5,7 +5,7 @@ use std::fmt::{self, Write};
 use crate::program::program::Program;
 
 /// A number computed from the text that is written to it, the same in every run and on every machine (FNV-1a, 64
-/// bits). It detects accidental differences, not deliberate ones.
+/// bits). A digest detects accidental differences, not deliberate ones.
 ///
 /// ```
 /// use std::fmt::Write;

@@ -8,11 +8,11 @@ use crate::program::program::{Instruction, Program, Register};
 /// How the value of a register changes with time.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Motion {
-    /// Contains t.
+    /// The value contains t.
     pub(crate) time: bool,
-    /// It contains components of the state.
+    /// The value contains components of the state.
     pub(crate) state: bool,
-    /// It contains t other than in a linear function a t + b with fixed a and b.
+    /// The value contains t, other than in a linear function a t + b with fixed a and b.
     bent: bool,
 }
 

@@ -76,7 +76,8 @@ impl TimeDependence {
 
 /// Where the parts of f that contain t turn, bend, jump or have corners.
 ///
-/// Functions of t alone are followed wherever the motion goes; [`SteepFunctions`] are those of the state.
+/// Functions of t alone are followed wherever the motion goes; [`SteepFunctions`] are the functions of the
+/// state.
 /// ```
 /// use pc_expr::{Graph, Inputs, Program, TimeDependence};
 ///

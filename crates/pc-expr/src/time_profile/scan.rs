@@ -9,10 +9,11 @@ use super::part::Part;
 
 /// The number of pieces of a window over which the range of a function is first estimated.
 const PIECES: u32 = 32;
-/// A function that on a piece neither is monotonic nor bends only one way may vary there by this fraction
-/// of its range without closer examination.
+/// A function that is neither monotonic on a piece nor bends only one way may vary on it by this fraction of
+/// its range without closer examination.
 const FLAT: f64 = 1.0 / 64.0;
-/// The same fraction for a function with one of the two properties: it has one turn or one inflection there.
+/// The same fraction for a function with one of the two properties: it has one turn or one inflection on the
+/// piece.
 const TURN: f64 = 0.25;
 /// A rise or fall is a piece on which a monotonic function changes by at least this fraction of its range.
 const RISE: f64 = 2.0 / PIECES as f64;
@@ -63,7 +64,7 @@ impl Kind {
 /// What is known about one function so far.
 #[derive(Clone, Debug)]
 struct Track {
-    /// Its values over the window where they are finite, and how much it varies there.
+    /// The finite values of the function over the window, and how much it varies there.
     values: Option<Interval>,
     range: f64,
     rate: Sign,
@@ -99,8 +100,8 @@ impl Sign {
     }
 }
 
-/// The features of watched functions along a window, found as far as queried. Its buffers are reused for
-/// later windows, since there is one at each step.
+/// The features of watched functions along a window, found as far as queried. The buffers of a scan are
+/// reused for later windows, since each step has its own window.
 #[derive(Clone, Debug)]
 pub(crate) struct Scan {
     /// The time from which features are kept.

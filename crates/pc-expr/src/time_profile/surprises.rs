@@ -1,4 +1,5 @@
-//! The times in an interval at which watched functions show what their values at its ends do not.
+//! The times in an interval at which watched functions show what their values at the ends of the interval do
+//! not.
 
 use super::motion::PolynomialMotion;
 use super::part::Part;

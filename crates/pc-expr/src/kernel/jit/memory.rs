@@ -2,8 +2,8 @@
 //!
 //! On x86-64 an offset of less than 128 bytes from an address in a register takes one byte of an
 //! instruction, a larger one takes four; and code too long for the instruction cache runs several
-//! times slower. So memory is divided into windows of 256 bytes, with the address of the middle of
-//! each in a register.
+//! times slower. So memory is divided into windows of 256 bytes, with the address of the middle of each
+//! window in a register.
 
 use cranelift_codegen::cursor::{Cursor, FuncCursor};
 use cranelift_codegen::ir::{Block, InstBuilder, MemFlagsData, Value, types};

@@ -1,10 +1,10 @@
 //! The order of computation, and which values stay in memory.
 //!
 //! The values of straight-line code with thousands of operations do not fit into sixteen registers, and
-//! register allocators spill them badly. So the order is chosen here: depth first from the outputs, the
+//! register allocators spill them badly. So the order is chosen here: depth first from the outputs, with the
 //! operand that needs more registers first. The values that stay in memory are also chosen here: whenever
-//! there are too many for the registers, the one whose next use is furthest away goes to memory (Belady, IBM
-//! Systems Journal 5 (1966) 78), which for straight-line code minimises the number of loads.
+//! there are too many for the registers, the value whose next use is furthest away goes to memory (Belady,
+//! IBM Systems Journal 5 (1966) 78), which for straight-line code minimises the number of loads.
 
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};

@@ -64,7 +64,7 @@ impl LaneTape {
         self.binary(Binary::And, a, rest)
     }
 
-    /// The value of the function, whose arguments are the first of these three.
+    /// The value of the function; it takes its arguments from the first of these three.
     pub(super) fn function(&mut self, function: Function, arguments: [LaneValue; 3]) -> LaneValue {
         let [x, y, z] = arguments;
         let zero = self.constant(0.0);

@@ -30,7 +30,8 @@ impl LaneKernel {
         kernels.next().unwrap_or_else(|| unreachable!("the last needs nothing"))
     }
 
-    /// A kernel with these instructions; `None` if this processor lacks them, or memory cannot be allocated.
+    /// A kernel with these instructions; `None` if this processor lacks these instructions, or if memory
+    /// cannot be allocated.
     pub fn with_instructions(tape: LaneTape, set: InstructionSet) -> Option<LaneKernel> {
         LaneKernel::of(Arc::new(tape), set)
     }
@@ -52,7 +53,7 @@ impl LaneKernel {
         (set == InstructionSet::Portable).then_some(LaneKernel { tape, set })
     }
 
-    /// Its instruction set.
+    /// The instruction set of this kernel.
     pub fn instructions(&self) -> InstructionSet {
         self.set
     }

@@ -47,7 +47,7 @@ pub enum Binary {
     Divide,
     /// a where a < b, else b, also where one of them is NaN
     Lesser,
-    /// a where a > b, else b, likewise
+    /// a where a > b, else b, also where one of them is NaN
     Greater,
     /// bitwise and
     And,
