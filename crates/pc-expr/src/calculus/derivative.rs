@@ -284,7 +284,7 @@ impl Graph {
         self.build_all(|dag| dag.gradient(output, &nodes))
     }
 
-    /// For each of `outputs` the derivatives ∂`output`/∂`symbol` that are not 0, each with the index of
+    /// For each of `outputs`, the derivatives ∂`output`/∂`symbol` that are not 0, each with the index of
     /// its symbol: the [gradients](Graph::gradient) as a sparse matrix.
     ///
     /// ```

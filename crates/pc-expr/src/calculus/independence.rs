@@ -94,7 +94,7 @@ impl Graph {
         self.regular_or_last(e, forms.filter(|&form| self.is_without(form, z)))
     }
 
-    /// The first of the forms of e without a new divisor, else the last, which is the most irregular.
+    /// The first of the forms of e without a new divisor, else the last form, which is the most irregular.
     fn regular_or_last<'g>(&'g self, e: Expr<'g>, forms: impl Iterator<Item = Expr<'g>>) -> Option<Expr<'g>> {
         let mut last = None;
         for form in forms {

@@ -16,7 +16,7 @@ const MOST_PRODUCTS: usize = 64;
 /// The maximum number of functions that are combined; combining this many takes some hundredths of a second.
 const MOST_FUNCTIONS: usize = 200;
 
-/// The maximum length of a component, as the number of operations when it is written out; this also bounds
+/// The maximum length of a component, measured by its number of operations when written out; this also bounds
 /// its depth.
 const LONGEST: u32 = 1_000;
 
@@ -224,7 +224,7 @@ fn circular<'g>(s: Expr<'g>, c: Expr<'g>, i: i32, j: i32) -> Vec<Expr<'g>> {
 mod tests {
     use super::*;
 
-    /// A function is recovered from its gradient up to a constant.
+    /// A function is recovered from its gradient, up to a constant.
     #[test]
     fn gradients_are_integrated() {
         let graph = Graph::new();

@@ -18,8 +18,8 @@ const SCALES: [f64; 5] = [1.0, 1e-3, 1e3, 1e-9, 1e9];
 const POINTS: u32 = 4;
 /// The least number of points with a value; all of them must agree.
 const LEAST: usize = 4;
-/// The greatest remainder of a sum that cancels, after some thousand rounding errors, as a fraction of its
-/// terms.
+/// The greatest remainder that some thousand rounding errors leave in a sum that cancels, as a fraction of
+/// its terms.
 const ROUNDING: f64 = 1e-12;
 
 impl Graph {

@@ -41,8 +41,8 @@ impl<'g> Substitution<'g> {
 
     /// Writes results without the symbols that were replaced.
     ///
-    /// A symbol that cancels may reappear, because the graph prefers an older, cheaper expression of the
-    /// same value that contains it.
+    /// A symbol that cancels may reappear, because the graph prefers an older, cheaper expression with the
+    /// same value that contains the symbol.
     fn drop_returned(&self, results: &mut [Expr<'g>]) {
         let graph = self.graph;
         let is_replaced = |symbol: &Expr<'g>| match symbol.atom() {
@@ -101,7 +101,7 @@ impl Graph {
         self.substitution(replacements).apply(outputs)
     }
 
-    /// The expressions rebuilt in another graph, from symbols of the same names.
+    /// The expressions rebuilt in another graph, from symbols with the same names.
     pub fn transcribe<'g, 'h>(&'g self, expressions: &[Expr<'g>], into: &'h Graph) -> Vec<Expr<'h>> {
         let symbols: Vec<(Expr<'g>, Expr<'h>)> = self
             .symbols_of(expressions)

@@ -27,7 +27,7 @@ pub(super) struct Term {
 }
 
 impl Graph {
-    /// The expressions as a book prints them, in the graph of a page, with symbols of the same names.
+    /// The expressions as a book prints them, in the graph of a page, with symbols that have the same names.
     ///
     /// ```
     /// # use pc_expr::{Folding, Graph};
@@ -352,7 +352,7 @@ fn split(one: &Factors, other: &Factors) -> (Factors, [Factors; 2]) {
     (common, both)
 }
 
-/// The powers that two products have in common: for each factor the smaller power, if both are above or
+/// The powers that two products have in common: for each factor, the smaller power, if both are above or
 /// both below the fraction bar.
 fn shared(one: &Factors, other: &Factors) -> Factors {
     let power = |&(node, e): &(NodeId, i32)| {

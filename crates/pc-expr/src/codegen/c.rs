@@ -1,4 +1,4 @@
-//! C99 that is also C++11.
+//! Source text in C99 that is also valid C++11.
 
 use crate::codegen::comment::is_hidden;
 use crate::codegen::layout::Calls;

@@ -1,7 +1,7 @@
 //! Long programs as a table of operations, traversed forward for their values and by the chain rule for derivatives.
 //!
-//! Straight-line code of a Jacobian is an order of magnitude longer than that of its function. If that is too long to
-//! read or compile, the operations of the function become a table, and two short loops do the rest.
+//! Straight-line code of a Jacobian is an order of magnitude longer than that of its function. If straight-line code
+//! is too long to read or compile, the operations of the function become a table, and two short loops do the rest.
 
 use std::fmt::Write;
 

@@ -295,7 +295,7 @@ impl<'a> Printer<'a> {
         if piece.len() > LONG || piece.depth >= DEEP { self.name_now(register) } else { piece.clone() }
     }
 
-    /// The text of a register at the beginning of a sum; see [`operand`](Self::operand).
+    /// The text of a register for use at the beginning of a sum; see [`operand`](Self::operand).
     fn first_term(&mut self, register: Register) -> Piece {
         let piece = &self.pieces[register.index()];
         let limit = if piece.binding == Binding::Sum { LONG_SUM } else { WIDTH };
@@ -385,7 +385,7 @@ impl<'a> Printer<'a> {
 }
 
 impl Piece {
-    /// The sum of this piece and a term that may have a sign.
+    /// The sum of this piece and a term that may begin with a sign.
     fn and_signed(self, term: &Piece) -> Piece {
         if term.is_negative() && term.binding != Binding::Sum {
             let mut positive = term.clone();

@@ -12,7 +12,7 @@ pub enum Language {
     Rust,
 }
 
-/// Where a printed function puts one output.
+/// Where a printed function puts an output.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
     /// An entry to be assigned, for instance `ydot[0]`.

@@ -1,4 +1,4 @@
-//! Rust that needs no `std`.
+//! Source text in Rust that does not need `std`.
 
 use crate::codegen::layout::Calls;
 use crate::graph::function::Function;

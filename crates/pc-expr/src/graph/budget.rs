@@ -7,8 +7,8 @@ use crate::graph::deadline::Deadline;
 use crate::graph::limits::{Limits, Spent};
 
 /// The memory and time that remain within the given limits. Clones share one budget, as do graphs
-/// [within](crate::Graph::within) it. Once it is spent, no graph creates further expressions, and
-/// derivations in them end in [`ExprError::Spent`](crate::ExprError::Spent).
+/// [within](crate::Graph::within) it. Once the budget is spent, no graph that shares it creates further
+/// expressions, and derivations in these graphs end in [`ExprError::Spent`](crate::ExprError::Spent).
 ///
 /// ```
 /// use pc_expr::{Budget, ExprError, Graph, Limits, Spent};

@@ -10,13 +10,13 @@ use crate::identity::roots::Value;
 
 /// sin, cos and exp of q·z are composed from those of z/FRACTION where q·FRACTION is an integer.
 const FRACTION: i32 = 12;
-/// The largest such integer.
+/// The largest integer q·FRACTION for which this is done.
 const MAX_MULTIPLE: i32 = 100 * FRACTION;
 /// Sums inside the argument of a sine or exponential are flattened up to this many terms; the remainder
 /// counts as one term.
 const MAX_TERMS: usize = 1 << 14;
 
-/// A term m/12·z of the argument of a sine or exponential.
+/// A term m/12·z in the argument of a sine or exponential.
 struct LinearTerm {
     /// z, if it is a node; otherwise a constant or a scaled node.
     node: Option<NodeId>,

@@ -1,4 +1,5 @@
-//! Numbers with the size of their terms, to distinguish a small number from the rounding error of zero.
+//! Numbers together with the size of their terms, to distinguish a small number from the rounding error of a
+//! zero.
 //!
 //! A weight is used once, at sample points of a derivation, so that its order of magnitude suffices; the
 //! bound with which a motion compares residuals at each state is an expression, in
@@ -117,8 +118,8 @@ impl Scalar for Weighed {
         Weighed { value, weight: 0.0, lost: false }
     }
 
-    /// A constant of the size of rounding errors counts as the remainder of numbers of order one, like
-    /// cos(π/2).
+    /// A constant as small as a rounding error, like cos(π/2), counts as the remainder of numbers of order
+    /// one.
     fn constant(value: Number) -> Weighed {
         const LEAST: f64 = f64::EPSILON / 16.0;
         const MOST: f64 = f64::EPSILON * 64.0;

@@ -1,4 +1,4 @@
-//! Events of a motion: zeros of functions g(t, y), and resets of the state there.
+//! Events of a motion: zeros of functions g(t, y), and resets of the state at these zeros.
 
 use std::sync::Arc;
 
@@ -40,7 +40,7 @@ pub struct Event {
 }
 
 impl Event {
-    /// An event in either direction that changes nothing.
+    /// An event that occurs in either direction and changes nothing.
     pub fn new(name: impl Into<String>) -> Event {
         Event { name: name.into(), direction: Direction::Both, terminal: false, resets: false }
     }
@@ -50,12 +50,12 @@ impl Event {
         Event { direction, ..self }
     }
 
-    /// This event, only where its function rises through zero.
+    /// This event, restricted to zeros through which its function rises.
     pub fn rising(self) -> Event {
         self.direction(Direction::Rising)
     }
 
-    /// This event, only where its function falls through zero.
+    /// This event, restricted to zeros through which its function falls.
     pub fn falling(self) -> Event {
         self.direction(Direction::Falling)
     }
@@ -70,7 +70,7 @@ impl Event {
         Event { resets, ..self }
     }
 
-    /// Its name, for messages.
+    /// The name of the event, for messages.
     pub fn name(&self) -> &str {
         &self.name
     }

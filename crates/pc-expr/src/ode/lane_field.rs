@@ -1,4 +1,4 @@
-//! Fields as programs for evaluation at many states at once.
+//! Vector fields as programs, for evaluation at many states at once.
 
 use std::sync::Arc;
 

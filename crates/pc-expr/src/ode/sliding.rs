@@ -50,7 +50,7 @@ pub enum SlidingError {
         /// Their functions.
         surfaces: Vec<String>,
     },
-    /// f has no series along them.
+    /// f has no series along the surfaces.
     #[error("the motion slides along {}, where it has no series: choose another method", surfaces.join(", "))]
     NoSeries {
         /// Their functions.
@@ -167,7 +167,7 @@ fn second_normal(
 enum Combination {
     /// f on each combination of sides; bit i of the index is set if surface i has side 1.
     Products(Vec<Vec<f64>>),
-    /// f at σ = 0, then its change with each σ.
+    /// f at σ = 0, then the change of f with each σ.
     Sum(Vec<f64>, Vec<Vec<f64>>),
 }
 

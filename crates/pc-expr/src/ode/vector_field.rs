@@ -50,7 +50,8 @@ pub trait VectorField {
         None
     }
 
-    /// Writes the entries of ∂f/∂y that [`sparsity`](VectorField::sparsity) lists, in its order.
+    /// Writes the entries of ∂f/∂y in the pattern [`sparsity`](VectorField::sparsity), in the order of the
+    /// pattern.
     ///
     /// Called only if there is a [Jacobian](VectorField::has_jacobian) and a pattern.
     ///
@@ -147,7 +148,8 @@ pub trait VectorField {
         None
     }
 
-    /// The Taylor series of the motion, ready to be expanded, with its branch functions and its cost.
+    /// The Taylor series of the motion, ready to be expanded, with the branch functions and the cost of the
+    /// series.
     ///
     /// # Errors
     /// [`Failure`] with the reason why there is no series: f has to be a program.

@@ -71,7 +71,7 @@ pub enum ParseErrorKind {
     /// A number beyond the largest floating-point number.
     #[error("number out of range")]
     NumberOutOfRange,
-    /// Nesting beyond [`MAX_DEPTH`].
+    /// Nesting deeper than [`MAX_DEPTH`].
     #[error("the expression is nested deeper than {MAX_DEPTH} levels")]
     TooDeep,
 }

@@ -10,7 +10,7 @@ const WORTH_IT: usize = 4;
 impl Program {
     /// This program divided into two: the first computes, from the `fixed` parameters alone, values that the
     /// second reads after its parameters; the first has to run only when the `fixed` parameters have changed.
-    /// `None` if that saves next to nothing.
+    /// `None` if the division saves next to nothing.
     ///
     /// ```
     /// # use pc_expr::{Graph, Inputs, Interpreter, Kernel, Program};

@@ -33,7 +33,7 @@ pub struct TaylorSeries {
     zeroth: Box<dyn Kernel>,
     next: Box<dyn Kernel>,
     sum: fn(Rows<'_>, usize, &mut [f64]),
-    /// The results of order 0, then a row for each order, from an offset aligned for vectors.
+    /// The results of order 0, then a row for each order, starting at an offset aligned for vectors.
     memory: Vec<f64>,
     begin: usize,
     /// The length of the results of order 0, and that of a row.

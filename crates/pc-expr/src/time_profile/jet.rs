@@ -121,7 +121,7 @@ impl Jet {
         }
     }
 
-    /// `a` where this is not negative, else `b`.
+    /// `a` where this function is not negative, else `b`.
     fn step(self, a: Jet, b: Jet) -> Jet {
         if self.value.lo >= 0.0 {
             a

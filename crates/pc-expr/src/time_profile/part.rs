@@ -65,7 +65,7 @@ pub(crate) struct Part {
     time: usize,
     /// The components of the state that are read.
     states: Vec<usize>,
-    /// Room for the polynomial of a component about a point.
+    /// Room for the polynomial of a component, expanded about a point.
     local: Vec<f64>,
 }
 

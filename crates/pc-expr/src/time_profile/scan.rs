@@ -1,4 +1,4 @@
-//! Where functions of time turn, bend, jump and have corners, one after the other.
+//! Points at which functions of time turn, bend, jump or have corners, one after the other.
 
 use std::collections::VecDeque;
 
@@ -17,7 +17,8 @@ const FLAT: f64 = 1.0 / 64.0;
 const TURN: f64 = 0.25;
 /// A rise or fall is a piece on which a monotonic function changes by at least this fraction of its range.
 const RISE: f64 = 2.0 / PIECES as f64;
-/// Turns and inflections within this fraction of the range from the last one do not count.
+/// Turns and inflections do not count if the function has changed by less than this fraction of its range
+/// since the last one.
 const SWING: f64 = 1e-3;
 /// The rounding error of a value, with a margin.
 const ROUNDING: f64 = 1e-12;
@@ -26,7 +27,7 @@ const SHORTEST: f64 = 1e-13;
 /// The maximum number of evaluations in one query.
 const MOST: u32 = 20_000;
 /// If this many of the shortest pieces contain no jump, the function turns faster than floating-point
-/// times resolve: finding a jump takes some forty evaluations.
+/// times resolve: finding a jump takes about forty evaluations.
 const NOISE: u32 = MOST / 4;
 
 /// A time at which a function of time changes its behaviour.

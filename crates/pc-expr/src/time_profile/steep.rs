@@ -36,7 +36,7 @@ enum Kind {
 }
 
 impl Kind {
-    /// The value that is watched for the function in a register.
+    /// The value that is watched to judge the function in a register.
     fn watch(self, place: usize) -> Watch {
         match self {
             Kind::Reciprocal { divisor, .. } => Watch::Reciprocal(divisor),

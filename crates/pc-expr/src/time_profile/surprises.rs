@@ -128,7 +128,7 @@ impl Seen {
         }
     }
 
-    /// Whether the values and rates at both ends may fail to show what happens between.
+    /// Whether the values and rates at both ends may fail to show what happens in between.
     fn hides(self) -> bool {
         self.sharp > 0 || self.turns > 1 || self.bends > 1 || self.turns == 1 && self.bends + self.unsure > 0
     }

@@ -81,9 +81,9 @@ pub(super) struct Plan {
 /// Whether an operand is in a machine register before and after its use.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stay {
-    /// Whether it is in a machine register before its use.
+    /// Whether the operand is in a machine register before its use.
     pub(super) held: bool,
-    /// Whether it is no longer kept there after its use.
+    /// Whether the operand is no longer kept in a machine register after its use.
     pub(super) dies: bool,
 }
 

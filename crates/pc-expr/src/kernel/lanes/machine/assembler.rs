@@ -5,8 +5,8 @@ use iced_x86::{Code, Encoder, Instruction, MemoryOperand, Register};
 use super::super::instruction_set::InstructionSet;
 use super::super::tape::LANES;
 
-/// Registers for the address of the frame, that of the constants, and the mask of lanes out of
-/// range; calls preserve them.
+/// Registers for the address of the frame, the address of the constants, and the mask of lanes out of range;
+/// calls preserve these registers.
 const FRAME: Register = Register::RBX;
 const POOL: Register = Register::R12;
 pub(super) const NOTED: Register = Register::R13D;
