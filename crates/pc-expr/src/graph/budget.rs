@@ -71,7 +71,7 @@ pub(crate) struct Meter {
     deadline: Deadline,
     used: AtomicU64,
     stage: Mutex<&'static str>,
-    /// The limit that was reached first, and the stage.
+    /// The limit that was reached first, and the stage of the work at that moment.
     spent: OnceLock<(Spent, &'static str)>,
 }
 

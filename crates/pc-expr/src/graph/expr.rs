@@ -166,13 +166,13 @@ impl<'g> Expr<'g> {
         Expr::apply(Function::Atan2, &[self, x.into()])
     }
 
-    /// The smaller of the two.
+    /// The smaller of the two expressions.
     #[must_use]
     pub fn min(self, other: impl Into<Expr<'g>>) -> Expr<'g> {
         Expr::apply(Function::Min, &[self, other.into()])
     }
 
-    /// The larger of the two.
+    /// The larger of the two expressions.
     #[must_use]
     pub fn max(self, other: impl Into<Expr<'g>>) -> Expr<'g> {
         Expr::apply(Function::Max, &[self, other.into()])

@@ -69,7 +69,7 @@ impl Graph {
     /// incomplete result is replaced by an error that names the stage.
     ///
     /// # Errors
-    /// [`ExprError::Spent`], and the errors of the work.
+    /// [`ExprError::Spent`], and any error of the work itself.
     pub fn stage<T, E: From<ExprError>>(
         &self,
         name: &'static str,

@@ -13,7 +13,7 @@ const EXACT: i128 = 1 << 53;
 
 /// A constant of the graph.
 ///
-/// An `f64` given to the graph counts as the decimal number as which it is printed, so that `0.1 + 0.2` is 3/10 and
+/// An `f64` given to the graph counts as the decimal number as which it is printed, so that `0.1 + 0.2` is 3/10, and
 /// like terms cancel exactly, even with powers of units such as 10⁻⁹. Results that are neither a small rational nor a
 /// small rational times a power of ten are rounded to `f64`.
 #[derive(Clone, Copy, Debug)]

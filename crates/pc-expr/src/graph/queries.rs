@@ -148,7 +148,7 @@ impl Graph {
     }
 
     /// Whether fingerprints decide every identity between the values: no constant in them is rounded, and the
-    /// only functions are the exponential, and sine and cosine, circular or hyperbolic.
+    /// only functions are the exponential and the circular or hyperbolic sine and cosine.
     ///
     /// ```
     /// # use pc_expr::Graph;

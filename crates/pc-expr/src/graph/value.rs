@@ -34,7 +34,7 @@ struct PowerProduct {
 const SALT_CIRCLE: u64 = 0x5ca1_ab1e;
 const SALT_EXP: u64 = 0xe4b0_4e47;
 const SALT_ORDER: u64 = 0x0bde_500f;
-/// The largest denominator of an exponent that counts as the order of a root.
+/// The largest denominator of an exponent that still counts as the order of a root.
 const MAX_ORDER: i64 = 1000;
 /// Exponents up to this size are taken out of powers.
 const MAX_EXPONENT: i32 = 1 << 10;
@@ -263,8 +263,8 @@ impl Dag {
         self.roots_mut().power(&base, whole).scaled(unknown)
     }
 
-    /// (cos u, sin u) by the group law of the circle from one point for each term of u: a random point, or the point
-    /// of an angle whose sine, cosine or tangent is known.
+    /// (cos u, sin u), composed by the group law of the circle from one point for each term of u: a random point, or
+    /// the point of an angle whose sine, cosine or tangent is known.
     fn circle_point(&mut self, u: NodeId) -> CirclePoint {
         let mut point = CirclePoint::zero();
         for LinearTerm { node, z, m } in self.linear_terms(u) {

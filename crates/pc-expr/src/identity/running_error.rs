@@ -37,7 +37,8 @@ pub struct Weighed {
     /// The number.
     pub value: f64,
     weight: f64,
-    /// Whether it is 0 only because its nonzero value was too small to be represented, such as exp(−10⁶).
+    /// Whether the number is 0 only because its nonzero value was too small to be represented, such as
+    /// exp(−10⁶).
     lost: bool,
 }
 
@@ -63,7 +64,7 @@ impl Weighed {
         self.value.is_finite() && self.weight.is_finite()
     }
 
-    /// Whether it is a finite number that is 0 only where the exact value is.
+    /// Whether this is a finite number that is 0 only where the exact value is 0.
     pub fn is_known(self) -> bool {
         self.is_finite() && !self.lost
     }

@@ -126,7 +126,7 @@ impl<'g> Names<'g> {
         Names { graph, lines, list: list.into_iter().map(name).collect() }
     }
 
-    /// The names in order of first use; the meaning of each uses only earlier names.
+    /// The names in order of first use; the meaning of each name uses only earlier names.
     pub fn list(&self) -> &[Name<'g>] {
         &self.list
     }
@@ -205,7 +205,7 @@ impl Written {
         self.terms.get(&value.atom()).cloned().unwrap_or_else(|| vec![value.display(self.style)])
     }
 
-    /// An expression on the page as part of another one.
+    /// An expression on the page as part of another expression.
     pub fn text(&self, expression: Expr<'_>) -> String {
         match expression.atom() {
             Atom::Node(node) if self.pieces.contains_key(&node) => self.pieces[&node].text.clone(),

@@ -59,7 +59,7 @@ pub(super) fn binary(set: InstructionSet, operation: Binary) -> (Code, Option<u3
     }
 }
 
-/// Whether a and b may be exchanged.
+/// Whether the operands a and b may be exchanged.
 pub(super) fn commutes(operation: Binary) -> bool {
     matches!(
         operation,

@@ -1,6 +1,6 @@
 //! Allocation of registers.
 //!
-//! If none is free, the value with the latest next use is evicted [Belady 1966], and stored unless
+//! If no register is free, the value with the latest next use is evicted [Belady 1966], and stored unless
 //! it is in memory already.
 
 use super::assembler::{Assembler, EncodeError, Home, Last, Vector};
