@@ -1,13 +1,13 @@
 //! Derivatives of expressions, and short forms of the results.
 //!
 //! `derivative` sweeps backwards for gradients and forwards along a direction; `substitution` puts
-//! expressions in place of symbols. `collect` rebuilds an expression as a polynomial from its `powers` of each symbol;
-//! `independence` removes symbols that cancel from the coefficients, with the help of `numbers` and, if constants are
-//! rounded, `rounding`; `polynomial` writes the result out. `potential` finds a function from its gradient; `root_powers`
-//! makes powers of roots recognisable; `typeset` rewrites expressions for readers and measures them in `columns`;
-//! `multiplied_out` opens brackets if sines and cosines then merge; `breaks` and `seams` find the surfaces on which
-//! expressions may jump, and `held` keeps expressions on one side of these; `commensurable` finds terms of the same
-//! dimension.
+//! expressions in place of symbols. `collect` rebuilds an expression as a polynomial from the `powers` of each symbol
+//! in it; `independence` removes symbols that cancel from the coefficients, with the help of `numbers` and, if
+//! constants are rounded, `rounding`; `polynomial` writes the result out. `potential` finds a function from its
+//! gradient; `root_powers` makes powers of roots recognisable; `typeset` rewrites expressions for readers and measures
+//! them in `columns`; `multiplied_out` expands brackets if sines and cosines then merge; `breaks` and `seams` find
+//! the surfaces on which expressions may jump, and `held` keeps expressions on one side of these surfaces;
+//! `commensurable` finds terms of the same dimension.
 
 pub(crate) mod breaks;
 pub(crate) mod collect;

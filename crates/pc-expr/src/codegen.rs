@@ -2,7 +2,7 @@
 //!
 //! A [`Program`](crate::Program) is written as C or Rust source that rounds as the kernels do. Read `layout` (the
 //! request and the result), the words of the languages (`comment`, `c`, `rust` and `identifier`, which `language`
-//! offers), then `function_body` (from a tape to statements) and `codegen`, which starts it; `chain` writes long
+//! offers), then `function_body` (from a tape to statements) and `codegen`, its entry point; `chain` writes long
 //! tapes as tables.
 
 pub(crate) mod c;

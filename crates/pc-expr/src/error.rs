@@ -11,7 +11,7 @@ pub enum ExprError {
         /// Text of the dividend.
         dividend: String,
     },
-    /// An expression that has no value for any values of the symbols, such as log(−1).
+    /// An expression that has no value whatever the values of the symbols, such as log(−1).
     #[error("an expression is undefined: a constant in it has no finite value")]
     Undefined,
     /// A symbol that is neither an input of the program nor given a value.
@@ -33,7 +33,7 @@ pub enum ExprError {
     /// Input values that are not finite: no expression is at fault.
     #[error("the values given are not finite: {}", listed(given))]
     GivenNotFinite {
-        /// Names and values of the inputs, time, state and parameters, that are not finite.
+        /// Names and values of the inputs (time, state and parameters) that are not finite.
         given: Vec<(String, f64)>,
     },
     /// An expression whose value is not a finite number.

@@ -1,7 +1,7 @@
 //! Identities, decided by values in prime fields (Schwartz, Zippel).
 //!
 //! This module decides whether nodes are zero, equal, or linearly dependent, with an error probability below
-//! 2⁻¹⁰⁰. Read `prime_field` (arithmetic in GF(2⁶¹−c)), `fingerprint` (values in two of them), `roots`
+//! 2⁻¹⁰⁰. Read `prime_field` (arithmetic in GF(2⁶¹−c)), `fingerprint` (values in two such fields), `roots`
 //! (values that contain roots), `circle_point` (sines and cosines); the graph gives each node such a value.
 //! Then come questions about several nodes at once: `rank`, by independent `blocks`, and `linear_relations`,
 //! by elimination in `echelon`. If constants are rounded, numerical values decide, weighed by their

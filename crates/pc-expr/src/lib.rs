@@ -32,9 +32,8 @@
 //!
 //! # Around it
 //!
-//! Below: no other crate of pc. Above: [pc-algebra](../pc_algebra/index.html), which makes frames
-//! from its expressions, and [pc-solve](../pc_solve/index.html), which integrates its vector
-//! fields.
+//! Below this crate: no other crate of pc. Above it: [pc-algebra](../pc_algebra/index.html), which makes
+//! frames from expressions, and [pc-solve](../pc_solve/index.html), which integrates vector fields.
 
 mod calculus;
 mod codegen;

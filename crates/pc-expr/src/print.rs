@@ -2,8 +2,8 @@
 //!
 //! Expressions are written as lines. Read `piece` (text with its binding strength) and `symbol` (names split
 //! into their parts), `style` with `book`, `latex` and `mathml` (the notations), then `writer`, which decides
-//! order, signs and parentheses, `text`, one expression, and `names`, many expressions with names for long or
-//! repeated parts.
+//! order, signs and parentheses, `text` (one expression) and `names` (many expressions, with names for long
+//! or repeated parts).
 
 pub(crate) mod book;
 pub(crate) mod latex;

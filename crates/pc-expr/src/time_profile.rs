@@ -2,8 +2,9 @@
 //!
 //! A program and an interval of time give the times at which an integrator must look. Read `interval` and
 //! `jet` (enclosures of functions and their derivatives), `motion` (enclosures of time and state), `part` (the
-//! watched part of a program), `scan` (where it turns, bends and jumps) and `surprises` (which of these are
-//! hidden), then `profile`, functions of time, and `steep`, functions of the state: the interfaces of a field.
+//! watched part of a program), `scan` (where that part turns, bends and jumps) and `surprises` (which of these
+//! are hidden), then `profile`, functions of time, and `steep`, functions of the state: the interfaces of a
+//! field.
 
 pub(crate) mod interval;
 pub(crate) mod jet;

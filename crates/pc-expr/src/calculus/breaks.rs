@@ -8,7 +8,7 @@ use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::number::Number;
 use crate::graph::subgraph::Cone;
 
-/// A surface on which a `step` or a `sign` in an expression changes.
+/// A surface on which a `step` or a `sign` in an expression changes its value.
 #[derive(Clone, Copy, Debug)]
 pub struct Break<'g> {
     /// A function that changes sign on the surface.
@@ -20,7 +20,7 @@ pub struct Break<'g> {
 }
 
 impl Graph {
-    /// The surfaces on which an expression may jump; those of `atan2` are not among them, since its values are angles.
+    /// The surfaces on which an expression may jump, except those of `atan2`, whose values are angles.
     ///
     /// ```
     /// # use pc_expr::Graph;

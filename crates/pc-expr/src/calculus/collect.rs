@@ -1,7 +1,7 @@
 //! Short forms: expressions rebuilt as polynomials whose coefficients are free of symbols that cancel.
 //!
 //! Correctness does not depend on this module: a form is adopted only if its fingerprint shows the same
-//! function, and only if it is cheaper. With [`Folding::Structural`] expressions are unchanged.
+//! function, and only if it is cheaper. With [`Folding::Structural`], expressions are left unchanged.
 
 use crate::calculus::polynomial::Polynomial;
 use crate::graph::expr::Expr;
@@ -13,23 +13,23 @@ use crate::identity::blocks::independent_blocks;
 
 /// The maximum number of terms of a polynomial in several variables.
 const MOST_TERMS: usize = 10_000;
-/// A sum of more terms than this is searched for groups of terms without common variables.
+/// A sum with more terms than this is searched for groups of terms that have no variables in common.
 const MANY_TERMS: usize = 64;
 /// Expressions longer than this when written out are left as they are.
 const TOO_LONG: u32 = 20_000;
 
 impl Graph {
-    /// Each expression in the shortest form found: collected by powers of `variables` in this order, every
-    /// coefficient written without the symbols it does not depend on.
+    /// Each expression in the shortest form found: collected by powers of `variables` in this order, with
+    /// every coefficient written without the symbols it does not depend on.
     ///
-    /// Symbols that a value does not depend on are set to a number; those of the `variables` are set only to 0, so
-    /// that no other number replaces them.
+    /// Symbols that a value does not depend on are set to a number; the `variables` among them are set only to 0,
+    /// so that no other number replaces a variable.
     pub fn shorten<'g>(&'g self, expressions: &[Expr<'g>], variables: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let places = SymbolPlaces::of(variables);
         expressions.iter().map(|&e| self.collect(e, (variables, &places), 0)).collect()
     }
 
-    /// e collected by the variables with index `first` and above.
+    /// e collected by powers of the variables with index `first` and above.
     fn collect<'g>(
         &'g self,
         e: Expr<'g>,
@@ -60,9 +60,9 @@ impl Graph {
         if collected.tree_cost() <= e.tree_cost() { collected } else { self.forget(e, places) }
     }
 
-    /// A long sum whose terms fall into groups without common variables, each group collected on its own: the
-    /// cost of collecting by all variables in turn is quadratic in their number. `None` if the result is not
-    /// shorter, or e is not a sum.
+    /// A long sum whose terms fall into groups with no variables in common, with each group collected on its
+    /// own: the cost of collecting by one variable after the other is quadratic in their number. `None` if
+    /// the result is not shorter, or e is not a sum.
     fn collect_apart<'g>(
         &'g self,
         e: Expr<'g>,

@@ -6,7 +6,7 @@ use crate::graph::dag::Dag;
 use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::number::Number;
 
-/// A subexpression at this depth counts as one name.
+/// A subexpression at this depth is counted as a single name.
 const DEPTH: u32 = 5;
 const NAME: usize = 3;
 
@@ -20,7 +20,8 @@ impl Dag {
     }
 }
 
-/// The columns of each node at each depth: a node that occurs many times is measured once for each depth.
+/// The number of columns of each node at each depth: a node that occurs many times is measured once for each
+/// depth.
 struct Columns<'d> {
     dag: &'d Dag,
     known: FxHashMap<(NodeId, u32), usize>,

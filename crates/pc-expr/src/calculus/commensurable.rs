@@ -13,8 +13,8 @@ impl Graph {
     /// terms of each sum, the arguments of `atan2`, `min` and `max`, and the arguments of sines, exponentials, logarithms
     /// and similar functions, each with the number 1.
     ///
-    /// In units in which the symbols are of order one, the terms of a group are of the same order of
-    /// magnitude.
+    /// If the units are chosen such that the symbols are of order one, the terms of a group have the same
+    /// order of magnitude.
     ///
     /// ```
     /// # use pc_expr::{Expr, Graph};

@@ -1,8 +1,8 @@
 //! Derivatives: reverse sweeps for gradients, forward sweeps along a direction.
 //!
-//! For `step`, min and max only the branch that is taken counts. The other branch may have no value or no
-//! slope there, and 0 times that would be NaN. A branch that is not defined everywhere is therefore
-//! differentiated separately, and the choice is made between the derivatives.
+//! For `step`, min and max, only the branch that is taken counts. The other branch may have no value or no
+//! slope there, and multiplying that by 0 would give NaN. A branch that is not defined everywhere is
+//! therefore differentiated separately, and the choice is made between the derivatives.
 
 use rustc_hash::FxHashMap;
 
@@ -27,7 +27,7 @@ impl Dag {
         self.gradient_with(output, symbols, &mut FxHashMap::default())
     }
 
-    /// As [`gradient`](Self::gradient), where `known` holds the gradients of branches that have been
+    /// Like [`gradient`](Self::gradient); `known` holds the gradients of branches that have already been
     /// computed.
     fn gradient_with(
         &mut self,
@@ -284,7 +284,7 @@ impl Graph {
         self.build_all(|dag| dag.gradient(output, &nodes))
     }
 
-    /// For each of `outputs` the derivatives ∂`output`/∂`symbol` that are not 0, each with the index of
+    /// For each of `outputs`, the derivatives ∂`output`/∂`symbol` that are not 0, each with the index of
     /// its symbol: the [gradients](Graph::gradient) as a sparse matrix.
     ///
     /// ```

@@ -10,7 +10,7 @@ use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::number::Number;
 use crate::graph::subgraph::Cone;
 
-/// Expressions in which the side of each surface is a symbol: smooth functions, which are continued beyond the surfaces.
+/// Expressions in which the side of each surface is a symbol: smooth functions, which continue beyond the surfaces.
 #[derive(Clone, Debug)]
 pub struct Held<'g> {
     /// The expressions, with pieces chosen by the sides.
@@ -24,7 +24,7 @@ pub struct Held<'g> {
 pub struct Surface<'g> {
     /// Vanishes there.
     pub function: Expr<'g>,
-    /// Its sign: 1 or −1.
+    /// The sign of the function: 1 or −1.
     pub side: Expr<'g>,
 }
 
@@ -35,8 +35,8 @@ impl Graph {
     /// sign(g) = s,   |g| = s g,   step(g, a, b) = step(s, a, b),   min(a, b) = step(s, b, a) with g = a − b,
     /// atan(u/v) = atan2(s u, s v) with g = v
     /// ```
-    /// The surfaces of a product are those of its factors. Expressions that are not piecewise stay as they
-    /// are.
+    /// The surfaces of a product are the surfaces of its factors. Expressions that are not piecewise stay as
+    /// they are.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -83,7 +83,7 @@ impl Graph {
     }
 
     /// Held expressions between two pieces, for sides from −1 to 1: with step(s, a, b) = (1 + s)/2 a + (1 − s)/2 b for
-    /// each s made of `sides`, the expressions become combinations of their values on both sides.
+    /// each s composed of `sides`, the expressions become combinations of their values on both sides.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -173,7 +173,7 @@ impl Graph {
         pieces.into_iter().map(piece).collect()
     }
 
-    /// A piece with its surfaces held; adds the surfaces that are new.
+    /// A piece with its surfaces held; new surfaces are added to the list.
     fn smooth<'g>(
         &'g self,
         Piece { function, args: [a, b, c], .. }: Piece<'g>,
@@ -195,7 +195,8 @@ impl Graph {
         }
     }
 
-    /// The sign of a function in terms of the sides of its factors that move; adds the surfaces that are new.
+    /// The sign of a function in terms of the sides of those of its factors that move; new surfaces are added
+    /// to the list.
     fn side<'g>(
         &'g self,
         function: Expr<'g>,

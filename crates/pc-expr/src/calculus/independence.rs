@@ -1,8 +1,8 @@
 //! Expressions written without the symbols that they do not depend on.
 //!
-//! A symbol that cancels is replaced by a number at which, by its fingerprint, the value stays the
-//! same. If constants are rounded there may be no such number; then the derivative decides, which
-//! must not exceed its `rounding` error.
+//! A symbol that cancels is replaced by a number that leaves the value unchanged, as the fingerprint shows.
+//! If constants are rounded there may be no such number; then the derivative decides: it must not exceed its
+//! `rounding` error.
 
 use std::collections::HashSet;
 
@@ -46,7 +46,7 @@ impl Graph {
         if !form.is_undefined() && self.is_same_value(form, e) { form } else { e }
     }
 
-    /// e with sin z and cos z replaced by a point of the circle, and z by a number, such that its value is
+    /// e with sin z and cos z replaced by a point of the circle, and z by a number, that leave the value
     /// unchanged; e itself if there are none. The first point that adds no new divisor is taken, or else the
     /// first point.
     fn at_regular_point<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
@@ -65,14 +65,14 @@ impl Graph {
         forms.find(|&form| self.is_as_regular(form, e)).or(first).unwrap_or(e)
     }
 
-    /// An expression equal to e, which does not depend on the symbol z, written without z: without new
-    /// divisors, or with one that vanishes only at exceptional points.
+    /// For an e that does not depend on the symbol z, an equal expression written without z. Any new divisor
+    /// in it vanishes only at exceptional points.
     pub(crate) fn without_symbol<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
         self.equal_form_without(e, z).or_else(|| self.rounded_form_without(e, z)).unwrap_or(e)
     }
 
-    /// e written without the symbol z, if it does not depend on z, exactly or up to the rounding of its
-    /// constants; e itself otherwise.
+    /// e written without the symbol z, if e does not depend on z, either exactly or up to the rounding of its
+    /// constants; otherwise e itself.
     fn without_idle_symbol<'g>(&'g self, e: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
         // With jumps the slope says nothing: that of atan(tan z) − z is zero.
         let jumps = || self.symbols_of(&self.seams(&[e])).contains(&z);
@@ -94,7 +94,7 @@ impl Graph {
         self.regular_or_last(e, forms.filter(|&form| self.is_without(form, z)))
     }
 
-    /// The first of the forms of e without a new divisor, else the last, which is the most irregular.
+    /// The first of the forms of e without a new divisor, else the last form, which is the most irregular.
     fn regular_or_last<'g>(&'g self, e: Expr<'g>, forms: impl Iterator<Item = Expr<'g>>) -> Option<Expr<'g>> {
         let mut last = None;
         for form in forms {
@@ -111,7 +111,8 @@ impl Graph {
         self.has_values(form) && !self.symbols_of(&[form]).contains(&z)
     }
 
-    /// Whether the functions of numbers in a form have values: exp(z), written at z = 10⁶, has no value.
+    /// Whether the calls with numbers as arguments in a form have values: exp(z), written at z = 10⁶, has
+    /// none.
     fn has_values<'g>(&'g self, form: Expr<'g>) -> bool {
         let Atom::Node(root) = form.atom_in(self) else { return !form.is_undefined() };
         self.with(|dag| {
@@ -129,10 +130,10 @@ impl Graph {
         })
     }
 
-    /// `outputs` written without symbols other than `known`, as far as they do not depend on these. Such
-    /// a symbol cancels; it may appear if a result has the value of an older and cheaper expression that
-    /// contains it. If constants are rounded, it cancels if the derivative with respect to it is no more
-    /// than [rounding error](crate::Weighed::rest).
+    /// `outputs` written without the symbols outside `known` on which they do not depend. A symbol that
+    /// cancels may still appear if a result has the value of an older and cheaper expression that contains
+    /// it. If constants are rounded, a symbol counts as cancelling if the derivative with respect to it is no
+    /// more than [rounding error](crate::Weighed::rest).
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -175,7 +176,8 @@ impl Graph {
         .filter(move |&form| self.is_same_value(form, e) && self.has_values(form))
     }
 
-    /// The composite angles, such as Ω t in sin Ω t and cos Ω t, of which e contains both sine and cosine.
+    /// The composite angles, such as Ω t in sin Ω t and cos Ω t, of which e contains both the sine and the
+    /// cosine.
     fn composite_angles<'g>(&'g self, e: Expr<'g>) -> Vec<Expr<'g>> {
         let Atom::Node(root) = e.atom_in(self) else { return Vec::new() };
         let angles: Vec<NodeId> = self.with(|dag| {
@@ -243,7 +245,7 @@ impl Graph {
         self.trial(e, &[(z.symbol_in(self), Atom::Constant(value))])
     }
 
-    /// e with nodes replaced; a division by zero on the way is not reported.
+    /// e with nodes replaced; a division by zero in the process is not reported.
     fn trial<'g>(&'g self, e: Expr<'g>, replacements: &[(NodeId, Atom)]) -> Expr<'g> {
         let output = e.atom_in(self);
         self.build(|dag| {
@@ -254,8 +256,8 @@ impl Graph {
         })
     }
 
-    /// Whether the divisors of the first expression vanish only where those of the second do, judged by their
-    /// factors.
+    /// Whether the divisors of the first expression vanish only where the divisors of the second do, judged
+    /// by the factors of both.
     ///
     /// ```
     /// # use pc_expr::Graph;

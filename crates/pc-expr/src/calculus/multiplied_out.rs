@@ -1,4 +1,4 @@
-//! Sums whose brackets are multiplied out if terms then cancel, or combine to the sine or cosine of a sum:
+//! Sums whose brackets are multiplied out if terms then cancel, or combine into the sine or cosine of a sum:
 //! cos a (p sin a + q sin b) − sin a (p cos a + q cos b) = −q sin(a − b).
 
 use rustc_hash::FxHashMap;
@@ -13,11 +13,11 @@ use crate::graph::subgraph::Cone;
 
 /// Brackets that would give more products than this are not multiplied out.
 const MOST_PRODUCTS: usize = 24;
-/// Expressions of more nodes than this are left as they are.
+/// Expressions with more nodes than this are left as they are.
 const MOST_NODES: usize = 4000;
 
 impl Graph {
-    /// The expressions with their brackets multiplied out if sines and cosines then merge to a shorter
+    /// The expressions with their brackets multiplied out if sines and cosines then merge into a shorter
     /// form.
     ///
     /// ```
@@ -156,7 +156,7 @@ impl Dag {
     }
 }
 
-/// The factors in ascending order of their nodes, each node once.
+/// The factors in ascending order of their nodes, with each node listed once.
 fn gathered(mut factors: Factors) -> Factors {
     factors.sort_unstable_by_key(|&(node, _)| node);
     factors.dedup_by(|next, kept| {

@@ -10,8 +10,8 @@ use crate::graph::graph::Graph;
 /// The number of points at which values are compared.
 const POINTS: u32 = 4;
 
-/// The largest relative difference between two forms that rounding may cause, even with much cancellation
-/// in one of them; a quotient of rounding errors differs by as much as its own size.
+/// The largest relative difference between two forms that rounding may cause, even with much cancellation in
+/// one of them; quotients of rounding errors differ by as much as their own size.
 const DIFFERENCE: f64 = 1e-6;
 
 impl Graph {
@@ -28,7 +28,7 @@ impl Graph {
     }
 }
 
-/// Coordinate number `i` of a point: between 1/4 and 5/4, from multiples of the golden section.
+/// Coordinate number `i` of a point: between 1/4 and 5/4, computed from multiples of the golden ratio.
 fn coordinate(point: u32, i: u32) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     0.25 + (f64::from(i * POINTS + point + 1) * GOLDEN).fract()

@@ -1,4 +1,4 @@
-//! Polynomials with expressions for coefficients, as a book writes them.
+//! Polynomials with expressions as coefficients, written as in a book.
 
 use crate::graph::dag::Dag;
 use crate::graph::expr::Expr;
@@ -6,7 +6,7 @@ use crate::graph::graph::Graph;
 use crate::graph::node::Atom;
 use crate::graph::number::Number;
 
-/// Brackets are kept unless opening them saves this many columns.
+/// Brackets are kept unless expanding them saves this many columns.
 const WORTH_A_BRACKET: usize = 4;
 
 /// A polynomial Σ c·z_1^e_1 z_2^e_2 ….
@@ -14,13 +14,13 @@ const WORTH_A_BRACKET: usize = 4;
 pub struct Polynomial<'g> {
     /// The variables z.
     pub variables: Vec<Expr<'g>>,
-    /// Exponents of the variables, and the coefficient.
+    /// The exponents of the variables, and the coefficient.
     pub terms: Vec<(Vec<u32>, Expr<'g>)>,
 }
 
 impl<'g> Polynomial<'g> {
-    /// Polynomials written out in another graph, not nested, coefficients in front of their monomials; monomials with
-    /// the same coefficient are collected behind it if that is shorter.
+    /// Polynomials written out in another graph, without nesting and with coefficients in front of their monomials;
+    /// monomials with the same coefficient are collected behind it if that is shorter.
     ///
     /// Parts common to several coefficients are typeset once.
     pub fn expanded<'h>(polynomials: &[Self], from: &'g Graph, into: &'h Graph) -> Vec<Expr<'h>> {
@@ -48,7 +48,7 @@ impl<'g> Polynomial<'g> {
 }
 
 impl Dag {
-    /// Σ c z, with terms of equal coefficient collected.
+    /// Σ c z, with terms that have equal coefficients collected.
     fn collected_by_coefficient(&mut self, terms: &[(Atom, Atom)]) -> Atom {
         let mut groups: Vec<(Atom, Vec<(Atom, Number)>)> = Vec::new();
         for &(coefficient, monomial) in terms {

@@ -13,10 +13,11 @@ use crate::graph::number::Number;
 /// The maximum number of products into which one component is multiplied out.
 const MOST_PRODUCTS: usize = 64;
 
-/// The maximum number of functions that are combined; this many take some hundredths of a second.
+/// The maximum number of functions that are combined; combining this many takes some hundredths of a second.
 const MOST_FUNCTIONS: usize = 200;
 
-/// The maximum length of a component, in operations when written out; this also bounds its depth.
+/// The maximum length of a component, measured by its number of operations when written out; this also bounds
+/// its depth.
 const LONGEST: u32 = 1_000;
 
 /// The greatest power of a sum that is multiplied out.
@@ -29,7 +30,7 @@ impl Graph {
     /// F with ∂F/∂z_i = f_i, if the `form` f_i dz_i is exact and F is found: a combination with rational
     /// coefficients of products of powers, sines, cosines, exponentials and logarithms like those in the f_i.
     ///
-    /// That F has this gradient is proved. An exact form may go unrecognised.
+    /// The result is proved to have this gradient. An exact form may go unrecognised.
     ///
     /// # Panics
     /// If there are not as many components as variables.
@@ -114,7 +115,7 @@ impl Graph {
         (products.len() <= MOST_PRODUCTS).then_some(products)
     }
 
-    /// Candidate functions: the integral of a product over z may be a combination of these.
+    /// Candidate functions: the integral of a product with respect to z may be a combination of these.
     fn integrals<'g>(&'g self, product: &Product<'g>, z: Expr<'g>) -> Vec<Expr<'g>> {
         let mut collected: Product<'g> = Vec::new();
         for &(factor, power) in product {
@@ -170,7 +171,7 @@ impl Graph {
         functions.into_iter().chain(logarithms).collect()
     }
 
-    /// The function of one argument that is applied, and its argument.
+    /// The function of one argument that an expression applies, and its argument.
     fn call<'g>(&'g self, value: Expr<'g>) -> Option<(Function, Expr<'g>)> {
         let Atom::Node(id) = value.atom_in(self) else { return None };
         match self.with(|dag| dag.node(id)) {
@@ -209,8 +210,8 @@ fn over<'g>(f: Expr<'g>, u: Expr<'g>, z: Expr<'g>) -> Expr<'g> {
     if slope.is_zero() || slope.depends_on(z) { f } else { f / slope }
 }
 
-/// The products s^i' c^j' of the degree of s^i c^j, or, for quotients, those whose exponents differ by at
-/// most one.
+/// The products s^i' c^j' of the same degree as s^i c^j, or, for quotients, those whose exponents differ from
+/// i and j by at most one.
 fn circular<'g>(s: Expr<'g>, c: Expr<'g>, i: i32, j: i32) -> Vec<Expr<'g>> {
     if i >= 0 && j >= 0 {
         return (0..=i + j).map(|p| s.powi(p) * c.powi(i + j - p)).collect();
@@ -223,7 +224,7 @@ fn circular<'g>(s: Expr<'g>, c: Expr<'g>, i: i32, j: i32) -> Vec<Expr<'g>> {
 mod tests {
     use super::*;
 
-    /// A function is recovered from its gradient up to a constant.
+    /// A function is recovered from its gradient, up to a constant.
     #[test]
     fn gradients_are_integrated() {
         let graph = Graph::new();

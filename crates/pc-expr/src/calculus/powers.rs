@@ -57,7 +57,7 @@ enum Powers {
     Coefficients(Vec<Atom>),
     /// The symbol occurs in a denominator, or its powers are high.
     Unknown,
-    /// It is an argument of a function.
+    /// The symbol occurs in an argument of a function.
     BelowACall,
 }
 

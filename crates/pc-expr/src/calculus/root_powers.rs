@@ -1,4 +1,4 @@
-//! Powers of roots, created so that later expressions of the same value are recognised as such powers.
+//! Powers of roots, created so that later expressions with the same value are recognised as such powers.
 
 use crate::graph::expr::Expr;
 use crate::graph::function::Function;
@@ -7,13 +7,13 @@ use crate::graph::node::{Atom, Node};
 use crate::graph::number::Number;
 use crate::graph::subgraph::Cone;
 
-/// The highest exponent p of w^(p/2).
+/// The highest p in the powers w^(p/2).
 const HIGHEST: i32 = 6;
 
 impl Graph {
-    /// Creates the powers w^(p/2), |p| ≤ 6, of the radicands w of all square roots in some expressions. An
-    /// expression built later with the value of such a power becomes that power, which is the shorter form.
-    /// Returns whether there are roots.
+    /// Creates the powers w^(p/2), |p| ≤ 6, of the radicands w of all square roots in the given expressions.
+    /// An expression built later with the value of such a power becomes that power, which is the shorter
+    /// form. Returns whether the expressions contain square roots.
     ///
     /// ```
     /// # use pc_expr::Graph;

@@ -1,7 +1,7 @@
 //! Whether an expression is zero up to the rounding of its constants.
 //!
 //! Fingerprints treat rounded constants as exact. The components of a unit vector, each rounded, have
-//! squares whose sum is not quite 1, so that the terms they multiply do not seem to cancel. Numerical
+//! squares whose sum is not quite 1, so that terms multiplied by them do not seem to cancel. Numerical
 //! values decide: a sum that is left over by rounding is small relative to its terms at every point; a
 //! genuinely small value is about as large as the terms of its sum.
 
@@ -12,13 +12,13 @@ use crate::graph::graph::Graph;
 use crate::identity::running_error::Weighed;
 
 /// The orders of magnitude of the points: a sum that cancels at only one of them, such as √(1 + v²/c²) − 1 for
-/// v far below c, is detected at another.
+/// v far below c, is recognised as nonzero at another.
 const SCALES: [f64; 5] = [1.0, 1e-3, 1e3, 1e-9, 1e9];
-/// The number of points of each order.
+/// The number of points of each order of magnitude.
 const POINTS: u32 = 4;
-/// The number of points that must agree.
+/// The least number of points with a value; all of them must agree.
 const LEAST: usize = 4;
-/// The greatest remainder that some thousand rounding errors leave of a sum that cancels, as a fraction of
+/// The greatest remainder that some thousand rounding errors leave in a sum that cancels, as a fraction of
 /// its terms.
 const ROUNDING: f64 = 1e-12;
 
@@ -49,8 +49,8 @@ impl Graph {
     }
 }
 
-/// Coordinate number `i` of a point, from multiples of the golden section: between 1/4 and 5/4, and at every
-/// other point of either sign.
+/// Coordinate number `i` of a point, computed from multiples of the golden ratio: between 1/4 and 5/4, or, at
+/// every other point, between −1 and 1.
 fn coordinate(point: u32, i: u32) -> f64 {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     let part = (f64::from(i * POINTS + point + 1) * GOLDEN).fract();

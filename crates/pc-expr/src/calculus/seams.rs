@@ -9,8 +9,8 @@ use crate::graph::subgraph::Cone;
 
 impl Graph {
     /// Functions at whose zeros finite values may jump: those at which `step`, `sign`, `abs`, `min`, `max`,
-    /// `atan2` and roots of squares change to another piece, and the divisors below functions that bound a pole, as in
-    /// atan(1/x). In most cases the values do not jump there: abs(x) does not, x/abs(x) does.
+    /// `atan2` and roots of squares change to another piece, and the divisors inside functions that stay bounded at a
+    /// pole, as in atan(1/x). In most cases the values do not jump there: abs(x) does not, but x/abs(x) does.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -77,7 +77,7 @@ impl Dag {
         divisors.map(|&(divisor, _)| divisor).collect()
     }
 
-    /// The arguments of a function that stays finite where these have a pole.
+    /// The arguments of a function that stays finite where its arguments have a pole.
     fn bounded(&self, node: NodeId) -> Vec<Atom> {
         match self.node(node) {
             Node::Call { function: Function::Atan | Function::Tanh | Function::Exp, args } => {

@@ -10,8 +10,8 @@ use crate::graph::number::Number;
 use crate::graph::places::SymbolPlaces;
 use crate::graph::subgraph::{Assignment, Cone};
 
-/// Symbols with their replacements. The cost of applying it to an expression depends only on the size of that
-/// expression, however long the list is.
+/// Symbols with their replacements. The cost of applying the list to an expression depends only on the size
+/// of that expression, however long the list is.
 #[derive(Clone, Debug)]
 pub struct Substitution<'g> {
     graph: &'g Graph,
@@ -41,8 +41,8 @@ impl<'g> Substitution<'g> {
 
     /// Writes results without the symbols that were replaced.
     ///
-    /// A symbol that cancels may reappear, because the graph prefers an older, cheaper expression of the
-    /// same value that contains it.
+    /// A symbol that cancels may reappear, because the graph prefers an older, cheaper expression with the
+    /// same value that contains the symbol.
     fn drop_returned(&self, results: &mut [Expr<'g>]) {
         let graph = self.graph;
         let is_replaced = |symbol: &Expr<'g>| match symbol.atom() {
@@ -101,7 +101,7 @@ impl Graph {
         self.substitution(replacements).apply(outputs)
     }
 
-    /// The expressions rebuilt in another graph, from symbols of the same names.
+    /// The expressions rebuilt in another graph, from symbols with the same names.
     pub fn transcribe<'g, 'h>(&'g self, expressions: &[Expr<'g>], into: &'h Graph) -> Vec<Expr<'h>> {
         let symbols: Vec<(Expr<'g>, Expr<'h>)> = self
             .symbols_of(expressions)

@@ -1,4 +1,4 @@
-//! Expressions as a book prints them: short to read, whatever the cost of computing them.
+//! Expressions as a book prints them: short to read, however costly to compute.
 //!
 //! Sums are rewritten from the inside outwards by identities that hold wherever both sides have values: cos a
 //! cos b + sin a sin b is cos(a − b), p/d + q/d is (p + q)/d, and common factors are taken out of sums.
@@ -13,7 +13,7 @@ use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::number::Number;
 use crate::graph::subgraph::Cone;
 
-/// Sums of more terms than this are left as they are, as all pairs of terms would have to be compared.
+/// Sums with more terms than this are left as they are, as all pairs of terms would have to be compared.
 const MOST_TERMS: usize = 60;
 
 /// Powers of nodes, in ascending order of the nodes.
@@ -27,7 +27,7 @@ pub(super) struct Term {
 }
 
 impl Graph {
-    /// The expressions as a book prints them, in the graph of a page, with symbols of the same names.
+    /// The expressions as a book prints them, in the graph of a page, with symbols that have the same names.
     ///
     /// ```
     /// # use pc_expr::{Folding, Graph};
@@ -261,7 +261,7 @@ impl Dag {
         Some(Term { q: q * sign, factors })
     }
 
-    /// The sum with terms of equal divisor as one quotient, if there are such terms.
+    /// The sum with terms over the same divisor combined into one quotient, if there are such terms.
     fn over_common_divisors(&mut self, constant: Number, terms: &[Term]) -> Option<Atom> {
         let mut groups: Vec<(Factors, Vec<Term>)> = Vec::new();
         for term in terms {
@@ -295,7 +295,7 @@ impl Dag {
         Some(self.sum_of(&all))
     }
 
-    /// The sum with its common factors in front of a bracket, if there are any.
+    /// The sum with its common factors in front of brackets, if there are common factors.
     pub(super) fn before_brackets(&mut self, constant: Number, terms: &[Term]) -> Option<Atom> {
         let (first, rest) = terms.split_first().filter(|_| constant.is_zero())?;
         let common = rest.iter().fold(first.factors.clone(), |common, term| shared(&common, &term.factors));
@@ -316,8 +316,8 @@ impl Dag {
 }
 
 impl Dag {
-    /// The sum with those terms collected in brackets that share the factor, a function or sum, that most
-    /// terms have in common.
+    /// The sum with some terms collected in brackets: those that share the function or sum that is a factor
+    /// of most terms.
     fn in_groups(&mut self, constant: Number, terms: &[Term]) -> Option<Atom> {
         let is_long = |node: NodeId| matches!(self.node(node), Node::Call { .. } | Node::Sum { .. });
         let has = |term: &Term, node: NodeId| term.factors.iter().any(|&(factor, e)| factor == node && e > 0);
@@ -352,7 +352,7 @@ fn split(one: &Factors, other: &Factors) -> (Factors, [Factors; 2]) {
     (common, both)
 }
 
-/// The powers that two products have in common: for each factor the smaller power, if both are above or
+/// The powers that two products have in common: for each factor, the smaller power, if both are above or
 /// both below the fraction bar.
 fn shared(one: &Factors, other: &Factors) -> Factors {
     let power = |&(node, e): &(NodeId, i32)| {

@@ -1,4 +1,4 @@
-//! C99 that is also C++11.
+//! Source text in C99 that is also valid C++11.
 
 use crate::codegen::comment::is_hidden;
 use crate::codegen::layout::Calls;
@@ -146,7 +146,7 @@ pub(crate) fn is_reserved(name: &str) -> bool {
         || prefixes.iter().any(|prefix| name.starts_with(prefix))
 }
 
-/// The name in `<math.h>`, if the function is there.
+/// The name of the function in `<math.h>`, if it is declared there.
 fn library_name(function: Function) -> Option<&'static str> {
     match function {
         Function::Abs => Some("fabs"),

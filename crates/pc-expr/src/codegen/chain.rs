@@ -1,7 +1,7 @@
 //! Long programs as a table of operations, traversed forward for their values and by the chain rule for derivatives.
 //!
-//! Straight-line code of a Jacobian is an order of magnitude longer than that of its function. If that is too long to
-//! read or compile, the operations of the function become a table, and two short loops do the rest.
+//! Straight-line code of a Jacobian is an order of magnitude longer than that of its function. If straight-line code
+//! is too long to read or compile, the operations of the function become a table, and two short loops do the rest.
 
 use std::fmt::Write;
 
@@ -10,9 +10,9 @@ use crate::codegen::{c, rust};
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};
 
-/// Number of columns of a Jacobian that are computed together.
+/// The number of columns of a Jacobian that are computed together.
 const LANES: usize = 4;
-/// The greatest width of a line of the table.
+/// The greatest width of a line in the table.
 const WIDTH: usize = 110;
 
 /// The names in the source of a table.
@@ -31,7 +31,7 @@ pub struct ChainLayout {
 pub struct Chain {
     /// The table, and the function that computes values.
     pub support: String,
-    /// The functions called there and in the derivatives.
+    /// The functions called in the support code and in the derivatives.
     pub calls: Calls,
     places: Vec<usize>,
     values: usize,
@@ -40,7 +40,7 @@ pub struct Chain {
 }
 
 /// The text of the derivative of a function in terms of its argument `x` and its value `r`, if there is a
-/// rule for it.
+/// rule for that function.
 fn derivative(function: Function, language: Language, [x, r]: [&str; 2]) -> Option<String> {
     let call = |f: Function, x: &str| match language {
         Language::C => c::call(f, x, ""), // the library has all of them
@@ -62,7 +62,7 @@ fn derivative(function: Function, language: Language, [x, r]: [&str; 2]) -> Opti
     })
 }
 
-/// The function that the derivative of a function calls.
+/// The function called in the derivative of a function.
 fn called(function: Function) -> Option<Function> {
     match function {
         Function::Sin => Some(Function::Cos),

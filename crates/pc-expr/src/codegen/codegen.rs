@@ -36,7 +36,8 @@ impl Program {
     /// ```
     ///
     /// # Panics
-    /// If `layout` does not have as many identifiers as there are inputs besides time, or as many slots as outputs.
+    /// If `layout` does not have as many identifiers as there are inputs besides time, or as many slots as there
+    /// are outputs.
     pub fn emit(&self, language: Language, layout: &Layout) -> FunctionBody {
         assert_eq!(layout.inputs.len(), self.state_len() + self.parameters_len(), "identifiers of inputs");
         assert_eq!(layout.slots.len(), self.outputs_len(), "slots of outputs");

@@ -9,9 +9,10 @@ use crate::program::program::{Instruction, Program, Register};
 
 /// Text longer than this gets a name instead of being written inside another expression.
 const LONG: usize = 80;
-/// A sum of several lines may become this long before its beginning gets a name.
+/// A sum written over several lines may become this long before its first part gets a name.
 const LONG_SUM: usize = 320;
-/// With this many operations or more, declarations are a tenth of the text.
+/// In C programs with more operations than this, `const` is left out of the declarations, which are a tenth
+/// of the text.
 const MANY: usize = 2000;
 /// Comments longer than this are cut.
 const LONGEST_COMMENT: usize = 60;
@@ -19,7 +20,7 @@ const LONGEST_COMMENT: usize = 60;
 const DEEP: u32 = 3;
 /// Lines longer than this are broken.
 const WIDTH: usize = 110;
-/// Comments of neighbouring lines are aligned up to this column.
+/// Comments on neighbouring lines are aligned up to this column.
 const ALIGNED: usize = 64;
 
 /// How tightly a piece of text binds.
@@ -36,7 +37,7 @@ struct Piece {
     /// The terms of a sum, each except the first with its sign and a space before it; otherwise one term.
     terms: Vec<String>,
     binding: Binding,
-    /// How deep brackets are nested.
+    /// How deeply brackets are nested.
     depth: u32,
 }
 
@@ -80,7 +81,7 @@ impl Piece {
         (format!("({})", self.text()), self.depth + 1)
     }
 
-    /// This sum with one more term.
+    /// This sum with one term added.
     fn and(mut self, sign: char, term: &Piece) -> Piece {
         // A term added or subtracted as a whole keeps its brackets.
         let (text, depth) = term.right(Binding::Product);
@@ -118,7 +119,7 @@ impl Lines {
         self.0.push((code.into(), comment));
     }
 
-    /// The text, with comments of neighbouring lines aligned.
+    /// The text, with comments on neighbouring lines aligned.
     fn text(&self, language: Language) -> String {
         let mut text = String::new();
         let run = |(code, comment): &(String, String)| !comment.is_empty() && code.len() <= ALIGNED;
@@ -294,7 +295,7 @@ impl<'a> Printer<'a> {
         if piece.len() > LONG || piece.depth >= DEEP { self.name_now(register) } else { piece.clone() }
     }
 
-    /// The text of a register at the beginning of a sum; see [`operand`](Self::operand).
+    /// The text of a register for use at the beginning of a sum; see [`operand`](Self::operand).
     fn first_term(&mut self, register: Register) -> Piece {
         let piece = &self.pieces[register.index()];
         let limit = if piece.binding == Binding::Sum { LONG_SUM } else { WIDTH };
@@ -384,7 +385,7 @@ impl<'a> Printer<'a> {
 }
 
 impl Piece {
-    /// The sum of this piece and a term that may have a sign.
+    /// The sum of this piece and a term that may begin with a sign.
     fn and_signed(self, term: &Piece) -> Piece {
         if term.is_negative() && term.binding != Binding::Sum {
             let mut positive = term.clone();

@@ -27,7 +27,7 @@ fn greek(letter: char) -> Option<String> {
     }
 }
 
-/// `name` spelt in ASCII letters, digits and single `_`, beginning with a letter; empty for an empty name.
+/// `name` spelt in ASCII letters, digits and single `_`, beginning with a letter; empty if the name is empty.
 fn spelt(name: &str) -> String {
     let stem = name.trim_end_matches('\'');
     let mut text = String::new();

@@ -39,7 +39,7 @@ impl Language {
         comment::comment(text)
     }
 
-    /// Definitions that these calls need: in C the functions that `<math.h>` lacks, with names that begin
+    /// The definitions that these calls need: in C the functions that `<math.h>` lacks, with names that begin
     /// with `prefix`; in Rust the module `math`.
     pub fn helpers(self, calls: &Calls, prefix: &str) -> String {
         match self {

@@ -12,7 +12,7 @@ pub enum Language {
     Rust,
 }
 
-/// Where a printed function puts one output.
+/// Where a printed function puts an output.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
     /// An entry to be assigned, for instance `ydot[0]`.
@@ -26,9 +26,10 @@ pub enum Place {
 pub struct Slot {
     /// Where the output is put.
     pub place: Place,
-    /// Its meaning, as a comment after the statement; may be empty.
+    /// The meaning of the output, as a comment after the statement; may be empty.
     pub comment: String,
-    /// A name for its value if that is used again, an identifier of the language; may be empty.
+    /// A name for the value of the output in case that value is used again: an identifier of the language;
+    /// may be empty.
     pub local: String,
 }
 
@@ -43,7 +44,7 @@ pub struct Layout {
     pub skip_zeros: bool,
     /// The prefix of the [helper functions](Language::helpers); in C all names share one namespace.
     pub prefix: String,
-    /// Identifiers that no local may have, such as the name of the array of the outputs.
+    /// Identifiers that no local variable may have, such as the name of the array of the outputs.
     pub reserved: Vec<String>,
 }
 

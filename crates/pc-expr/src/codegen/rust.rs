@@ -1,4 +1,4 @@
-//! Rust that needs no `std`.
+//! Source text in Rust that does not need `std`.
 
 use crate::codegen::layout::Calls;
 use crate::graph::function::Function;
@@ -36,7 +36,8 @@ pub(crate) fn string(text: &str) -> String {
     format!("{text:?}")
 }
 
-/// A function of the module `math`: its name there, its expression with `std`, and its name in `libm`.
+/// A function of the module `math`: its name in that module, its expression with `std`, and its name in
+/// `libm`.
 struct Library {
     name: &'static str,
     arguments: &'static str,
@@ -65,8 +66,8 @@ fn library_function(function: Function) -> Option<Library> {
     Some(Library { name: function.name(), arguments, std, libm })
 }
 
-/// The functions that neither `std` nor `libm` has, which return the values of [`Function::eval`], and the module
-/// `math`.
+/// The module `math`, and the functions that neither `std` nor `libm` has; they return the values of
+/// [`Function::eval`].
 pub(crate) fn helpers(calls: &Calls) -> String {
     let mut text = String::new();
     let mut library = Vec::new();

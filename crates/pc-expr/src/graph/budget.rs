@@ -6,9 +6,9 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use crate::graph::deadline::Deadline;
 use crate::graph::limits::{Limits, Spent};
 
-/// The memory and time that remain within some limits. Clones share one budget, as do graphs
-/// [within](crate::Graph::within) it. Once it is spent, no graph creates further expressions, and
-/// derivations in them end in [`ExprError::Spent`](crate::ExprError::Spent).
+/// The memory and time that remain within the given limits. Clones share one budget, as do graphs
+/// [within](crate::Graph::within) it. Once the budget is spent, no graph that shares it creates further
+/// expressions, and derivations in these graphs end in [`ExprError::Spent`](crate::ExprError::Spent).
 ///
 /// ```
 /// use pc_expr::{Budget, ExprError, Graph, Limits, Spent};
@@ -33,7 +33,7 @@ impl Budget {
         Budget(Arc::new(Meter::new(self.0.limits.clone(), self.0.deadline.clone())))
     }
 
-    /// The limits with which it was made.
+    /// The limits with which this budget was made.
     pub fn limits(&self) -> &Limits {
         &self.0.limits
     }
@@ -71,7 +71,7 @@ pub(crate) struct Meter {
     deadline: Deadline,
     used: AtomicU64,
     stage: Mutex<&'static str>,
-    /// The limit that was reached first, and the stage.
+    /// The limit that was reached first, and the stage of the work at that moment.
     spent: OnceLock<(Spent, &'static str)>,
 }
 

@@ -15,7 +15,7 @@ use crate::graph::number::Number;
 use crate::identity::fingerprint::Fingerprint;
 use crate::identity::roots::{Roots, Terms, Value};
 
-/// The bit shared by symbols that are confined to the expressions made with them.
+/// The bit shared by all symbols that are confined to the expressions made with them.
 const CONFINED: u64 = 1 << 63;
 
 #[derive(Debug)]
@@ -46,14 +46,14 @@ pub(crate) struct Dag {
     /// The arguments of roots and the like in the node, which bound the region where it has a value.
     pub(super) limits: Vec<Divisors>,
     pub(super) divisor_sets: DivisorSets,
-    /// The node that stands for this one, if a better one of the same value (up to sign) was found later.
+    /// The node that replaces this one, if a better one with the same value (up to sign) was found later.
     successor: Vec<Option<(NodeId, Number)>>,
     terms: Vec<(NodeId, Number)>,
     factors: Vec<(NodeId, i32)>,
     names: Vec<String>,
     by_structure: HashTable<NodeId>,
     pub(super) by_value: HashTable<NodeId>,
-    /// Numerators of the divisions by zero so far.
+    /// The numerators of all divisions by zero so far.
     pub(super) zero_divisions: Vec<Atom>,
 }
 
@@ -162,7 +162,7 @@ impl Dag {
         }
     }
 
-    /// The symbol of that name, created if it is new.
+    /// The symbol with that name, created if it is new.
     pub(crate) fn symbol(&mut self, name: &str) -> NodeId {
         let candidate = Candidate::Symbol(name);
         self.find(&candidate).unwrap_or_else(|| {
@@ -212,7 +212,7 @@ impl Dag {
     /// worse, the shorter one is better. Two forms, each with a divisor that the other lacks, stay separate
     /// nodes; so do two forms if one contains a [confined](Dag::confine) symbol.
     ///
-    /// Once the budget is spent the result is undefined, so that the work ends soon.
+    /// Once the budget is spent, the result is undefined, so that the work ends soon.
     pub(super) fn admit(&mut self, candidate: &Candidate<'_>) -> Atom {
         self.asked = self.asked.wrapping_add(1);
         let looks = self.asked == 0;
@@ -371,7 +371,7 @@ impl Dag {
         id
     }
 
-    /// Whether a candidate costs less than a node, or costs as much and contains fewer symbols.
+    /// Whether a candidate costs less than a node, or costs the same but contains fewer symbols.
     fn is_shorter(&self, candidate: &Candidate<'_>, node: NodeId) -> bool {
         let (ours, theirs) = (self.symbols_of(candidate), self.symbols[node.index()]);
         let without = ours & theirs == ours && ours != theirs;
@@ -393,7 +393,8 @@ impl Dag {
     }
 
     /// The number of operations of a candidate written out as a tree: n − 1 additions or multiplications
-    /// for n operands, plus those of coefficients and powers; a division counts four, a call ten.
+    /// for n operands, plus the operations for coefficients and powers; a division counts as four operations,
+    /// a call as ten.
     fn cost_of(&self, candidate: &Candidate<'_>) -> u32 {
         let sum = |costs: &mut dyn Iterator<Item = u32>| costs.fold(0u32, u32::saturating_add);
         match *candidate {

@@ -25,7 +25,7 @@ pub struct Deadline {
 }
 
 impl Deadline {
-    /// The deadline of work that begins now within these limits.
+    /// The deadline for work that begins now within these limits.
     pub fn new(limits: &Limits) -> Deadline {
         let end = |time: Duration| Some((time, Instant::now().checked_add(time)?));
         Deadline { time: limits.time.and_then(end), cancel: limits.cancel.clone() }

@@ -4,7 +4,7 @@ use rustc_hash::FxHashMap;
 
 use crate::graph::node::NodeId;
 
-/// A set of more divisors than this counts as the set of all divisors.
+/// A set with more divisors than this counts as the set of all divisors.
 const MOST: usize = 64;
 
 /// The index of a set of divisors.
@@ -36,7 +36,7 @@ impl DivisorSets {
         &self.sets[set.0 as usize]
     }
 
-    /// The set of these nodes, in ascending order and each once.
+    /// The set of these nodes, which are listed in ascending order without repetition.
     pub(super) fn intern(&mut self, nodes: Vec<NodeId>) -> Divisors {
         if nodes.len() > MOST {
             return Divisors::ALL;

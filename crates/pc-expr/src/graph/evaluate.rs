@@ -18,14 +18,14 @@ use crate::graph::subgraph::Cone;
 pub trait Scalar: Copy + Add<Output = Self> + Mul<Output = Self> + Neg<Output = Self> {
     /// The constant.
     fn from_f64(value: f64) -> Self;
-    /// The constant as such a number, exact where possible.
+    /// The constant as a number of this type, exact where possible.
     fn constant(value: Number) -> Self {
         Self::from_f64(value.to_f64())
     }
     /// x^exponent
     #[must_use]
     fn powi(self, exponent: i32) -> Self;
-    /// The value of the function at `args`, as many as its arity.
+    /// The value of the function at `args`, which has one entry for each of its arguments.
     fn call(function: Function, args: &[Self]) -> Self;
 }
 

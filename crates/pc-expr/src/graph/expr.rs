@@ -55,7 +55,7 @@ impl<'g> Expr<'g> {
         matches!(self.atom, Atom::Constant(c) if !c.is_finite())
     }
 
-    /// The leading numerical factor, 1 if there is none; that of a constant is the constant itself.
+    /// The leading numerical factor, 1 if there is none; for a constant, the constant itself.
     ///
     /// ```
     /// # use pc_expr::{Graph, Number};
@@ -116,7 +116,7 @@ impl<'g> Expr<'g> {
         id
     }
 
-    /// The function applied to the first of `args`, as many as its arity.
+    /// The function applied to the first n of `args`, where n is its arity.
     ///
     /// # Panics
     /// If there are fewer arguments.
@@ -166,13 +166,13 @@ impl<'g> Expr<'g> {
         Expr::apply(Function::Atan2, &[self, x.into()])
     }
 
-    /// The smaller of the two.
+    /// The smaller of the two expressions.
     #[must_use]
     pub fn min(self, other: impl Into<Expr<'g>>) -> Expr<'g> {
         Expr::apply(Function::Min, &[self, other.into()])
     }
 
-    /// The larger of the two.
+    /// The larger of the two expressions.
     #[must_use]
     pub fn max(self, other: impl Into<Expr<'g>>) -> Expr<'g> {
         Expr::apply(Function::Max, &[self, other.into()])
@@ -204,13 +204,13 @@ impl<'g> Expr<'g> {
 }
 
 impl Graph {
-    /// The symbol of that name; the same name always gives the same symbol.
+    /// The symbol with that name; the same name always gives the same symbol.
     pub fn symbol(&self, name: &str) -> Expr<'_> {
         let node = self.with(|dag| dag.symbol(name));
         self.expr(Atom::Node(node))
     }
 
-    /// The symbols of those names.
+    /// The symbols with those names.
     pub fn symbols<const N: usize>(&self, names: [&str; N]) -> [Expr<'_>; N] {
         names.map(|name| self.symbol(name))
     }

@@ -71,18 +71,19 @@ impl Function {
         }
     }
 
-    /// Whether it has derivatives of every order wherever it has a value: no jump, no corner, no root.
+    /// Whether the function has derivatives of every order wherever it has a value: no jump, no corner, no
+    /// root.
     pub fn is_smooth(self) -> bool {
         use Function::*;
         !matches!(self, Asin | Acos | Atan2 | Sqrt | Abs | Sign | Min | Max | Step | Pow)
     }
 
-    /// Whether it has no jump.
+    /// Whether the function has no jump.
     pub fn is_continuous(self) -> bool {
         !matches!(self, Function::Atan2 | Function::Sign | Function::Step)
     }
 
-    /// Whether it consists of several functions, each on a part of its domain.
+    /// Whether the function consists of several pieces, each on a part of its domain.
     pub fn is_piecewise(self) -> bool {
         matches!(self, Function::Abs | Function::Sign | Function::Min | Function::Max | Function::Step)
     }

@@ -54,7 +54,7 @@ impl Graph {
         Graph { dag: RefCell::new(Dag::new(folding, Some(budget.meter()))), budget }
     }
 
-    /// An empty graph with the same folding as this one, which draws on a budget that others may share.
+    /// An empty graph with the same folding as this one; it draws on a budget that others may share.
     #[must_use]
     pub fn within(self, budget: &Budget) -> Graph {
         Graph::of(self.folding(), budget.clone())
@@ -69,7 +69,7 @@ impl Graph {
     /// incomplete result is replaced by an error that names the stage.
     ///
     /// # Errors
-    /// [`ExprError::Spent`], and the errors of the work.
+    /// [`ExprError::Spent`], and any error of the work itself.
     pub fn stage<T, E: From<ExprError>>(
         &self,
         name: &'static str,

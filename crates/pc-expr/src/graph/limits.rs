@@ -12,7 +12,7 @@ pub struct Limits {
     pub memory: u64,
     /// Time since the [budget](crate::Budget) was made; no limit by default.
     pub time: Option<Duration>,
-    /// A handle that ends the work from elsewhere.
+    /// A handle by which another thread can end the work.
     pub cancel: Cancel,
 }
 

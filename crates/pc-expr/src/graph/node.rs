@@ -50,9 +50,9 @@ impl Slice {
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Node {
-    /// Only as an argument of a call.
+    /// A constant, which is a node only as an argument of a call.
     Constant(Number),
-    /// Index into the names.
+    /// A symbol, given by its index into the names.
     Symbol(u32),
     Sum {
         constant: Number,

@@ -1,21 +1,21 @@
 //! The rules by which sums and products are normalised as they are built.
 //!
-//! A sum is a linear combination c + Σ qᵢ nᵢ with rational coefficients, a product a power product Π nᵢ^eᵢ with
-//! integer exponents; rational factors of products are kept in the sum around them.
+//! A sum is a linear combination c + Σ qᵢ nᵢ with rational coefficients, and a product is of the form Π nᵢ^eᵢ
+//! with integer exponents; rational factors of products are kept in the sum around them.
 
 use crate::graph::dag::Dag;
 use crate::graph::function::Function;
 use crate::graph::node::{Atom, Candidate, Folding, Node, NodeId};
 use crate::graph::number::Number;
 
-/// Sums of at most this many terms are merged into the sums that contain them. A bound keeps an accumulation
-/// `s = s + x` of n terms from costing n² memory.
+/// Sums of at most this many terms are merged into the sums that contain them. The bound keeps an
+/// accumulation `s = s + x` of n terms from costing n² memory.
 const MERGED_TERMS: usize = 24;
-/// The same bound for products.
+/// The same bound for the factors of products.
 const MERGED_FACTORS: usize = 64;
-/// Nested sums below one operand are opened up to this many terms, and so are nested products.
+/// Nested sums below one operand are flattened up to this many terms, and so are nested products.
 const GATHERED: usize = 1024;
-/// Integer powers larger than this stay calls of `pow`.
+/// Powers with integer exponents larger than this remain calls of `pow`.
 pub(super) const MAX_EXPONENT: u32 = 1 << 16;
 
 impl Dag {
@@ -59,8 +59,8 @@ impl Dag {
         }
     }
 
-    /// Adds q·n to `out` and `constant`, opening the small sums inside. Coefficients that would overflow or
-    /// underflow stay where they are.
+    /// Adds q·n to `out` and `constant`, flattening the small sums inside it. Coefficients that would
+    /// overflow or underflow stay where they are.
     fn gather_terms(&self, node: NodeId, q: Number, out: &mut Vec<(NodeId, Number)>, constant: &mut Number) {
         let limit = out.len() + GATHERED;
         let (mut next, mut open) = (Some((node, q)), Vec::new());
@@ -152,8 +152,8 @@ impl Dag {
         }
     }
 
-    /// Adds n^e to `out` and `coefficient`, opening the small products inside. Coefficients and exponents that
-    /// would overflow or underflow stay where they are.
+    /// Adds n^e to `out` and `coefficient`, flattening the small products inside it. Coefficients and
+    /// exponents that would overflow or underflow stay where they are.
     fn gather_factors(&self, node: NodeId, e: i32, out: &mut Vec<(NodeId, i32)>, coefficient: &mut Number) {
         let limit = out.len() + GATHERED;
         let (mut next, mut open) = (Some((node, e)), Vec::new());

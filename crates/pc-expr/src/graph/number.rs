@@ -13,9 +13,9 @@ const EXACT: i128 = 1 << 53;
 
 /// A constant of the graph.
 ///
-/// An `f64` given to the graph counts as the decimal number that it is printed as, so that `0.1 + 0.2` is 3/10 and like terms cancel
-/// exactly, even with powers of units such as 10⁻⁹. Results that are neither a small rational nor a small rational times a power of
-/// ten are rounded to `f64`.
+/// An `f64` given to the graph counts as the decimal number as which it is printed, so that `0.1 + 0.2` is 3/10, and
+/// like terms cancel exactly, even with powers of units such as 10⁻⁹. Results that are neither a small rational nor a
+/// small rational times a power of ten are rounded to `f64`.
 #[derive(Clone, Copy, Debug)]
 pub enum Number {
     /// `num / den` in lowest terms, `den > 0`, both at most 2⁵³ in size.
@@ -108,7 +108,8 @@ impl Number {
         }
     }
 
-    /// The value of the number in each of two prime fields; it does not depend on the random points there.
+    /// The value of the number in each of two prime fields; this value does not depend on the random points
+    /// in the fields.
     pub(crate) fn fingerprint(self) -> Fingerprint {
         match self {
             Number::Rational { num, den: 1 } => Fingerprint::integer(num),
@@ -188,7 +189,7 @@ impl Number {
         }
     }
 
-    /// The value as an integer, if it is an integer that fits.
+    /// The value as an integer, if it is an integer within the range of the type.
     pub fn as_integer(self) -> Option<i32> {
         match self {
             Number::Rational { num, den: 1 } => i32::try_from(num).ok(),

@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use crate::graph::expr::Expr;
 use crate::graph::node::{Atom, NodeId};
 
-/// The index of each symbol in a list: without it, looking up all n symbols takes n² comparisons.
+/// The index of each symbol in a list: without such a table, looking up all n symbols takes n² comparisons.
 ///
 /// ```
 /// # use pc_expr::{Graph, SymbolPlaces};

@@ -12,12 +12,12 @@ use crate::graph::number::Number;
 use crate::graph::subgraph::Cone;
 
 impl Graph {
-    /// Whether all expressions are defined.
+    /// Checks that all expressions are defined.
     ///
     /// # Errors
     /// If not, [`ExprError::DivisionByZero`] with the dividend of the first division by an expression that is
-    /// identically zero, or [`ExprError::Undefined`] if there was none; [`ExprError::Spent`] if the budget is
-    /// spent.
+    /// identically zero, or [`ExprError::Undefined`] if there was no such division; [`ExprError::Spent`] if
+    /// the budget is spent.
     pub fn check<'g>(&'g self, expressions: &[Expr<'g>]) -> Result<(), ExprError> {
         self.check_budget()?;
         if !expressions.iter().any(|x| x.is_undefined()) {
@@ -29,9 +29,9 @@ impl Graph {
         }
     }
 
-    /// The expression x, kept as a unit in all sums and products made from it from now on: for the result
-    /// of a step of a recursion, which is to be computed only once. Otherwise a sum of sums becomes one
-    /// sum, which is shorter to read and longer to compute.
+    /// The expression x, kept as a unit in all sums and products made from it from now on. This suits the
+    /// result of a step in a recursion if it is to be computed only once. Otherwise a sum of sums becomes
+    /// one sum, which is shorter to read but takes longer to compute.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -102,7 +102,8 @@ impl Graph {
         nodes.into_iter().map(|node| self.expr(Atom::Node(node))).collect()
     }
 
-    /// Whether each of the expressions contains no symbols but these; one pass decides it for all of them.
+    /// For each of the expressions, whether it contains no symbols but these; one pass decides this for all
+    /// of them.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -147,7 +148,7 @@ impl Graph {
     }
 
     /// Whether fingerprints decide every identity between the values: no constant in them is rounded, and the
-    /// only functions are the exponential, and sine and cosine, circular or hyperbolic.
+    /// only functions are the exponential and the circular or hyperbolic sine and cosine.
     ///
     /// ```
     /// # use pc_expr::Graph;
@@ -199,8 +200,8 @@ impl Graph {
         })
     }
 
-    /// Whether `is_one` holds for some node of the value that depends on one of the symbols; it is passed the
-    /// set of those nodes, too.
+    /// Whether `is_one` holds for some node of the value that depends on one of the symbols; `is_one` is also
+    /// passed the set of all such nodes.
     fn finds<'g>(
         &'g self,
         value: Expr<'g>,

@@ -8,8 +8,8 @@ use crate::graph::number::Number;
 use crate::identity::fingerprint::Fingerprint;
 
 impl Dag {
-    /// The divisors of a candidate, its own and those below it; none if nodes are merged by structure
-    /// alone.
+    /// The divisors of a candidate, both its own and those of the nodes below it; none if nodes are merged by
+    /// structure alone.
     pub(crate) fn divisors_of(&mut self, candidate: &Candidate<'_>) -> Divisors {
         if self.folding == Folding::Structural {
             return Divisors::NONE;
@@ -37,8 +37,8 @@ impl Dag {
         all
     }
 
-    /// The arguments that bound the region where a candidate has a value, its own and those below it; none
-    /// if nodes are merged by structure alone.
+    /// The arguments that bound the region where a candidate has a value, both its own and those of the nodes
+    /// below it; none if nodes are merged by structure alone.
     pub(crate) fn limits_of(&mut self, candidate: &Candidate<'_>) -> Divisors {
         if self.folding == Folding::Structural {
             return Divisors::NONE;
@@ -119,7 +119,7 @@ impl Dag {
         known.is_some_and(|id| self.divisors[id.index()] == Divisors::NONE)
     }
 
-    /// The values, up to sign, of the factors of some divisors; a root vanishes where its radicand does.
+    /// The values, up to sign, of the factors of the given divisors; a root vanishes where its radicand does.
     fn irreducible(&self, divisors: Divisors) -> Vec<Fingerprint> {
         let mut open = self.divisor_sets.get(divisors).to_vec();
         let mut values = Vec::with_capacity(open.len());

@@ -11,7 +11,7 @@ pub(crate) struct Cone {
 }
 
 impl Cone {
-    /// Everything below `roots`; iterative, so that no depth overflows the stack.
+    /// All nodes below `roots`, found without recursion, so that no depth of nesting overflows the stack.
     pub(crate) fn below(dag: &Dag, roots: impl IntoIterator<Item = Atom>) -> Cone {
         // One bit for each node of the graph is cheaper than a hash set.
         let mut seen = vec![0_u64; dag.len() / 64 + 1];

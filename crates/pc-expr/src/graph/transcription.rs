@@ -10,11 +10,11 @@ use crate::graph::graph::Graph;
 use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::number::Number;
 
-/// Writes expressions of one graph in another, with symbols of the same names.
+/// Writes expressions of one graph in another, with symbols that have the same names.
 ///
 /// The order of operands in a graph, and with it the last digits of values, depends on what was built in
-/// the graph before. In an empty graph it depends only on the expressions and the order in which they are
-/// written.
+/// the graph before. In an empty graph the order depends only on the expressions and the sequence in which
+/// they are written.
 ///
 /// ```
 /// # use pc_expr::{Graph, Transcription};

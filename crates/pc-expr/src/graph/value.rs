@@ -10,13 +10,13 @@ use crate::identity::roots::Value;
 
 /// sin, cos and exp of q·z are composed from those of z/FRACTION where q·FRACTION is an integer.
 const FRACTION: i32 = 12;
-/// The largest such integer.
+/// The largest integer q·FRACTION for which this is done.
 const MAX_MULTIPLE: i32 = 100 * FRACTION;
-/// Sums inside the argument of a sine or exponential are opened up to this many terms; the remainder counts
-/// as one term.
+/// Sums inside the argument of a sine or exponential are flattened up to this many terms; the remainder
+/// counts as one term.
 const MAX_TERMS: usize = 1 << 14;
 
-/// A term m/12·z of the argument of a sine or exponential.
+/// A term m/12·z in the argument of a sine or exponential.
 struct LinearTerm {
     /// z, if it is a node; otherwise a constant or a scaled node.
     node: Option<NodeId>,
@@ -34,7 +34,7 @@ struct PowerProduct {
 const SALT_CIRCLE: u64 = 0x5ca1_ab1e;
 const SALT_EXP: u64 = 0xe4b0_4e47;
 const SALT_ORDER: u64 = 0x0bde_500f;
-/// The largest denominator of an exponent that counts as the order of a root.
+/// The largest denominator of an exponent that still counts as the order of a root.
 const MAX_ORDER: i64 = 1000;
 /// Exponents up to this size are taken out of powers.
 const MAX_EXPONENT: i32 = 1 << 10;
@@ -219,7 +219,7 @@ impl Dag {
         PowerProduct { known, rest }
     }
 
-    /// log u = Σ e log f over its powers; including log √f = ½ log f and log e^f = f.
+    /// log u = Σ e log f over the powers f^e of u, including log √f = ½ log f and log e^f = f.
     fn logarithm(&mut self, u: NodeId) -> Value {
         let (c, mut factors) = self.factors_of(u);
         let mut sum = Vec::new();
@@ -263,8 +263,8 @@ impl Dag {
         self.roots_mut().power(&base, whole).scaled(unknown)
     }
 
-    /// (cos u, sin u) by the group law of the circle from one point for each term of u: a random one, or that of the
-    /// angle with a known sine, cosine or tangent.
+    /// (cos u, sin u), composed by the group law of the circle from one point for each term of u: a random point, or
+    /// the point of an angle whose sine, cosine or tangent is known.
     fn circle_point(&mut self, u: NodeId) -> CirclePoint {
         let mut point = CirclePoint::zero();
         for LinearTerm { node, z, m } in self.linear_terms(u) {

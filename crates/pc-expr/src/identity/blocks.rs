@@ -3,7 +3,7 @@
 /// The rows and columns of each block of a matrix that is block diagonal up to the order of its rows and
 /// columns; the blocks are in the order of their first rows. `entries` holds the columns of the nonzero
 /// entries of each row; rows and columns without entries are in no block. The blocks of large matrices are
-/// often small, which shortens work on them.
+/// often small, which shortens the work on them.
 ///
 /// ```
 /// let blocks = pc_expr::independent_blocks(3, &[vec![2], vec![0], vec![], vec![2, 1]]);

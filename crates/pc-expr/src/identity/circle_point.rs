@@ -15,7 +15,7 @@ impl CirclePoint {
         CirclePoint { cos: Value::ONE, sin: Fingerprint::ZERO.into() }
     }
 
-    /// A random point of the circle by its rational parametrisation.
+    /// A random point of the circle, from its rational parametrisation.
     pub(crate) fn random(key: u64) -> CirclePoint {
         let u = Fingerprint::random(key);
         let square = u.times(u);

@@ -55,8 +55,9 @@ impl Graph {
     /// `constants` among the symbols of the columns: f_j = Σ_{i<j} a_ji f_i at almost all values, where the
     /// a_ji are functions of the `constants`.
     ///
-    /// Each comes with a_j1..a_j,j−1 as fractions, which are 0 for columns that are combinations themselves. These
-    /// combinations are a proposal, which is right only if the coefficients are rational numbers.
+    /// Each of these columns comes with a_j1..a_j,j−1 as fractions, which are 0 for columns that are combinations
+    /// themselves. These combinations are a proposal, which is right only if the coefficients are rational
+    /// numbers.
     ///
     /// The other columns are certainly independent over the functions of the `constants`; a combination may
     /// be missed if a column contains rounded constants, or functions for which fingerprints know no
@@ -219,8 +220,8 @@ fn fraction(x: Residue) -> Number {
     found
 }
 
-/// The vector without common factor and denominators, as far as these stay exact; the first entry is
-/// positive.
+/// The vector with denominators and common factors removed, as far as its entries stay exact; the first entry
+/// is positive.
 fn whole(vector: &[Number]) -> Vec<Number> {
     let mut entries = vector.iter().copied().filter(|a| !a.is_zero());
     let Some(first) = entries.next() else { return vector.to_vec() };

@@ -1,7 +1,7 @@
 //! Linear algebra over fingerprints: results for almost all values of the symbols.
 //!
-//! Values may contain roots, whose products obey laws of their own; elimination therefore differs from
-//! that of `echelon`.
+//! Values may contain roots, whose products obey laws of their own; elimination therefore differs from the
+//! method of `echelon`.
 
 use crate::graph::expr::Expr;
 use crate::graph::graph::Graph;

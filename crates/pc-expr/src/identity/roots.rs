@@ -2,8 +2,8 @@
 //!
 //! A root is an unknown R with known R^q, as for √e and |e| (q = 2) and e^{1/q}. The powers R^k with k < q
 //! are kept separate and R^q is replaced by its value, which decides exactly the consequences of these laws:
-//! no sign is ever chosen, √(x²) is neither x nor −x. This holds while there are few roots: beyond
-//! [`MOST_TERMS`] a value is only its fingerprint, with random roots.
+//! no sign is ever chosen, √(x²) is neither x nor −x. This holds as long as there are few roots: beyond
+//! [`MOST_TERMS`], a value is only its fingerprint, with random roots.
 
 use std::sync::Arc;
 
@@ -32,7 +32,7 @@ impl Monomial {
 #[derive(Clone, Debug)]
 pub(crate) struct Value {
     pub(crate) fingerprint: Fingerprint,
-    /// In the order of the monomials, each once.
+    /// The terms in the order of their monomials, each of which occurs once.
     terms: Option<Terms>,
 }
 

@@ -1,4 +1,5 @@
-//! Numbers with the size of their terms, to distinguish a small number from the rounding error of zero.
+//! Numbers together with the size of their terms, to distinguish a small number from the rounding error of a
+//! zero.
 //!
 //! A weight is used once, at sample points of a derivation, so that its order of magnitude suffices; the
 //! bound with which a motion compares residuals at each state is an expression, in
@@ -19,8 +20,8 @@ const CHANGE: f64 = 1e-12;
 ///
 ///   w(a + b) = w(a) + w(b),   w(a b) = max(|a b|, |a| w(b), w(a) |b|),   w(f(a)) = max(|f|, |f'| w(a)),
 ///
-/// where in a sum w is at least the absolute value. It is a running error analysis \[N. J. Higham, *Accuracy
-/// and Stability of Numerical Algorithms*, 2002, § 3.3\] without the number of operations.
+/// where in a sum w is at least the absolute value. This is a running error analysis \[N. J. Higham,
+/// *Accuracy and Stability of Numerical Algorithms*, 2002, § 3.3\] without the number of operations.
 ///
 /// ```
 /// # use pc_expr::{Graph, Scalar, Weighed};
@@ -36,7 +37,8 @@ pub struct Weighed {
     /// The number.
     pub value: f64,
     weight: f64,
-    /// Whether it is 0 only because its nonzero value was too small to be represented, such as exp(−10⁶).
+    /// Whether the number is 0 only because its nonzero value was too small to be represented, such as
+    /// exp(−10⁶).
     lost: bool,
 }
 
@@ -62,12 +64,12 @@ impl Weighed {
         self.value.is_finite() && self.weight.is_finite()
     }
 
-    /// Whether it is a finite number that is 0 only where the exact value is.
+    /// Whether this is a finite number that is 0 only where the exact value is 0.
     pub fn is_known(self) -> bool {
         self.is_finite() && !self.lost
     }
 
-    /// f(a), weighed by its change with each of its arguments.
+    /// f(a), weighed by how much it changes with each of its arguments.
     fn of<const N: usize>(args: [Weighed; N], f: impl Fn([f64; N]) -> f64) -> Weighed {
         let at = args.map(|arg| arg.value);
         let value = f(at);
@@ -117,8 +119,8 @@ impl Scalar for Weighed {
         Weighed { value, weight: 0.0, lost: false }
     }
 
-    /// A constant of the size of rounding errors counts as the remainder of numbers of order one, like
-    /// cos(π/2).
+    /// A constant as small as a rounding error, like cos(π/2), counts as the remainder of numbers of order
+    /// one.
     fn constant(value: Number) -> Weighed {
         const LEAST: f64 = f64::EPSILON / 16.0;
         const MOST: f64 = f64::EPSILON * 64.0;

@@ -7,14 +7,13 @@ use crate::error::ExprError;
 use crate::kernel::kernel::{Entry, Interpreter, Kernel};
 use crate::program::program::Program;
 
-/// The kernel that runs a program. All give the same values, up to the rounding of fused
-/// operations.
+/// The kernel that runs a program. All kernels give the same values, up to the rounding of fused operations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backend {
     /// Machine code if the host allows it and the program is not too long, else the interpreter.
     #[default]
     Fastest,
-    /// The interpreter, which needs no compiling.
+    /// The interpreter, which needs no compilation.
     Interpreter,
 }
 

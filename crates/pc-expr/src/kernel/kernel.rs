@@ -65,7 +65,7 @@ impl Interpreter {
     /// Runs the program and returns the values that are not finite: inputs, or else the innermost
     /// expression, if any.
     ///
-    /// The slices have the lengths of [`eval`](Kernel::eval).
+    /// The slices have the same lengths as for [`eval`](Kernel::eval).
     pub fn diagnose(&mut self, t: f64, state: &[f64], parameters: &[f64]) -> Option<ExprError> {
         let program = &self.program;
         let names = || program.input_names().iter().cloned();

@@ -1,4 +1,4 @@
-//! A program in the form that is interpreted fastest: few steps, short indices, no bounds checks.
+//! A program in the form that can be interpreted fastest: few steps, short indices, no bounds checks.
 //!
 //! Dispatching a step costs more than an operation. So products are computed by the step that adds
 //! or subtracts them, and a sum of products is one step, term by term in the order of the program;

@@ -15,8 +15,8 @@ pub struct Colouring {
 
 impl Colouring {
     /// Gives each column the first colour that none of its rivals, the columns that share a row with it,
-    /// has; columns with the most rivals come first, and those with equally many keep the order of the
-    /// matrix.
+    /// has; columns with the most rivals come first, and columns with equally many rivals keep the order of
+    /// the matrix.
     pub(crate) fn of(pattern: &Pattern) -> Colouring {
         let rivals = rivals(pattern);
         let mut order: Vec<usize> = (0..pattern.columns()).collect();

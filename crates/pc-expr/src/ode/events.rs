@@ -1,4 +1,4 @@
-//! Events of a motion: zeros of functions g(t, y), and resets of the state there.
+//! Events of a motion: zeros of functions g(t, y), and resets of the state at these zeros.
 
 use std::sync::Arc;
 
@@ -40,7 +40,7 @@ pub struct Event {
 }
 
 impl Event {
-    /// An event in either direction that changes nothing.
+    /// An event that occurs in either direction and changes nothing.
     pub fn new(name: impl Into<String>) -> Event {
         Event { name: name.into(), direction: Direction::Both, terminal: false, resets: false }
     }
@@ -50,27 +50,27 @@ impl Event {
         Event { direction, ..self }
     }
 
-    /// This event, only where its function rises through zero.
+    /// This event, restricted to zeros through which its function rises.
     pub fn rising(self) -> Event {
         self.direction(Direction::Rising)
     }
 
-    /// This event, only where its function falls through zero.
+    /// This event, restricted to zeros through which its function falls.
     pub fn falling(self) -> Event {
         self.direction(Direction::Falling)
     }
 
-    /// Whether the integration ends there.
+    /// This event; `terminal` says whether the integration ends at it.
     pub fn terminal(self, terminal: bool) -> Event {
         Event { terminal, ..self }
     }
 
-    /// Whether [`Events::reset`] changes the state there.
+    /// This event; `resets` says whether [`Events::reset`] changes the state at it.
     pub fn resetting(self, resets: bool) -> Event {
         Event { resets, ..self }
     }
 
-    /// Its name, for messages.
+    /// The name of the event, for messages.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -80,12 +80,12 @@ impl Event {
         self.direction
     }
 
-    /// Whether the integration ends there.
+    /// Whether the integration ends at the event.
     pub fn is_terminal(&self) -> bool {
         self.terminal
     }
 
-    /// Whether it resets the state.
+    /// Whether the event resets the state.
     pub fn resets(&self) -> bool {
         self.resets
     }
@@ -105,11 +105,12 @@ pub trait Events {
     /// Writes g_i(t, y) to `values`, one for each event.
     ///
     /// # Errors
-    /// [`Failure`] where one is not defined; it ends the integration.
+    /// [`Failure`] where one of the functions is not defined; the failure ends the integration.
     fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure>;
 
-    /// The program whose outputs are the first functions, of (t, y) and parameters, with the values of these,
-    /// if there is one. Methods that have the motion as a function of time find all roots of these functions.
+    /// The program whose outputs are the first of the functions g, in terms of (t, y) and parameters, with
+    /// the values of these parameters, if there is such a program. Methods that have the motion as a function
+    /// of time find all roots of these functions.
     fn program(&self) -> Option<(&Arc<Program>, &[f64])> {
         None
     }
@@ -126,7 +127,7 @@ pub trait Events {
     /// Called only if [they exist](Events::has_parameter_derivatives), for sensitivities.
     ///
     /// # Errors
-    /// [`Failure`] where one is not defined; it ends the integration.
+    /// [`Failure`] where a derivative is not defined; the failure ends the integration.
     fn by_parameter(
         &mut self,
         _event: usize,
@@ -149,7 +150,7 @@ pub trait Events {
     /// Called only if [they exist](Events::has_derivatives), for sensitivities.
     ///
     /// # Errors
-    /// [`Failure`] where one is not defined; it ends the integration.
+    /// [`Failure`] where a derivative is not defined; the failure ends the integration.
     fn gradient(
         &mut self,
         _event: usize,
@@ -166,7 +167,7 @@ pub trait Events {
     /// Called only if [they exist](Events::has_derivatives), for sensitivities.
     ///
     /// # Errors
-    /// [`Failure`] where one is not defined; it ends the integration.
+    /// [`Failure`] where a derivative is not defined; the failure ends the integration.
     fn reset_along(
         &mut self,
         _event: usize,
@@ -181,7 +182,7 @@ pub trait Events {
     /// Turns y⁻ into y⁺ at event number `event`; called only if that event [resets](Event::resets) the state.
     ///
     /// # Errors
-    /// [`Failure`] where the new state is not defined; it ends the integration.
+    /// [`Failure`] where the new state is not defined; the failure ends the integration.
     fn reset(&mut self, _event: usize, _t: f64, _y: &mut [f64]) -> Result<(), Failure> {
         Ok(())
     }

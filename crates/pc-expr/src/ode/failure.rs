@@ -1,11 +1,11 @@
-//! Why a function of a state has no value there.
+//! The reason why a function has no value at a state.
 
 use std::error::Error;
 use std::fmt;
 
 /// Why a function of (t, y) could not be evaluated, and whether a nearby state may succeed.
 ///
-/// Its message is that of its cause.
+/// The message of a failure is that of its cause.
 #[derive(Debug)]
 pub struct Failure {
     recoverable: bool,

@@ -1,4 +1,4 @@
-//! Fields as programs for evaluation at many states at once.
+//! Vector fields as programs, for evaluation at many states at once.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ pub struct LaneField {
 /// others among the outputs of a [`LaneField`].
 ///
 /// A state is regular if each pivot is larger than `vanishing` times the largest of all sizes. Otherwise the
-/// member is integrated alone, with a closer examination.
+/// member of the ensemble is integrated alone and examined more closely.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Watched {
     /// The number of pivots after the rates.

@@ -22,10 +22,10 @@ pub enum Method {
 }
 
 impl Method {
-    /// All of them.
+    /// All methods.
     pub const ALL: [Method; 5] = [Method::Adams, Method::Bdf, Method::Dop853, Method::Taylor, Method::Auto];
 
-    /// Its name in model files, on command lines and in Python.
+    /// The name of the method in model files, on command lines and in Python.
     pub fn name(self) -> &'static str {
         match self {
             Method::Adams => "adams",

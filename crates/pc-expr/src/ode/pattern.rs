@@ -37,7 +37,7 @@ impl Pattern {
         pattern
     }
 
-    /// The pattern without zeros.
+    /// The pattern in which every entry may be nonzero.
     pub fn full(rows: usize, columns: usize) -> Pattern {
         Pattern::from_columns(rows, (0..columns).map(|_| 0..rows))
     }
@@ -67,8 +67,8 @@ impl Pattern {
         self.len() == self.rows * self.columns()
     }
 
-    /// The index at which the entries of each column start, then the number of all entries: columns + 1
-    /// numbers.
+    /// The index at which the entries of each column start, followed by the number of all entries; these are
+    /// columns + 1 numbers.
     pub fn column_starts(&self) -> &[usize] {
         &self.starts
     }
@@ -86,7 +86,7 @@ impl Pattern {
         &self.indices[self.starts[j]..self.starts[j + 1]]
     }
 
-    /// Row and column of each entry, in order.
+    /// The row and the column of each entry, in order.
     pub fn entries(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         (0..self.columns()).flat_map(|j| self.column(j).iter().map(move |&i| (i, j)))
     }

@@ -23,7 +23,7 @@ pub struct RateJump {
 }
 
 impl RateJump {
-    /// Whether this parameter moves the passage; without a parameter, whether the start does.
+    /// Whether this parameter moves the passage; if no parameter is given, whether the start state does.
     pub fn moves_with(&self, parameter: Option<usize>) -> bool {
         self.of_state || self.parameters.iter().any(|(j, _)| parameter == Some(*j))
     }

@@ -15,8 +15,8 @@ const ADDS_UP: f64 = 1e-9;
 /// Maximum number of steps of Newton's method.
 const MOST_STEPS: usize = 50;
 
-/// The motion that slides along some surfaces by Filippov's combination [Filippov 1988, § 4]: with f± on the two sides
-/// of g = 0,
+/// The motion that slides along some surfaces, given by Filippov's combination [Filippov 1988, § 4]: with f± on the
+/// two sides of g = 0,
 /// ```text
 /// ẏ = (1 + σ)/2 f⁺ + (1 − σ)/2 f⁻,   g_t + g_y ẏ = 0,   |σ| ≤ 1.
 /// ```
@@ -35,7 +35,7 @@ pub struct Sliding {
     pub weights: Vec<f64>,
     /// For each surface, the change of dg/dt with its σ: negative where f leads back to the surface.
     pub slopes: Vec<f64>,
-    /// For each surface where the slope is the change of d²g/dt² instead, the value of dg/dt there.
+    /// For each surface whose slope is the change of d²g/dt² instead, the value of dg/dt on it.
     pub resting: Vec<Option<f64>>,
     /// ẏ
     pub rates: Vec<f64>,
@@ -50,7 +50,7 @@ pub enum SlidingError {
         /// Their functions.
         surfaces: Vec<String>,
     },
-    /// f has no series along them.
+    /// f has no series along the surfaces.
     #[error("the motion slides along {}, where it has no series: choose another method", surfaces.join(", "))]
     NoSeries {
         /// Their functions.
@@ -132,8 +132,8 @@ fn rate(
     Ok(normal.iter().zip(&rates).fold(by_time, |sum, (slope, rate)| sum + slope * rate))
 }
 
-/// The derivatives of dg/dt with respect to time and state, above the surfaces whose sides are 0, as
-/// difference quotients.
+/// The derivatives of dg/dt with respect to time and state, as difference quotients, on the positive side of
+/// the surfaces whose sides are 0.
 fn second_normal(
     field: &mut (impl Switching + ?Sized),
     surface: usize,
@@ -167,7 +167,7 @@ fn second_normal(
 enum Combination {
     /// f on each combination of sides; bit i of the index is set if surface i has side 1.
     Products(Vec<Vec<f64>>),
-    /// f at σ = 0, then its change with each σ.
+    /// f at σ = 0, then the change of f with each σ.
     Sum(Vec<f64>, Vec<Vec<f64>>),
 }
 

@@ -6,12 +6,12 @@ use crate::ode::failure::Failure;
 use crate::program::program::Program;
 use crate::time_profile::profile::TimeDependence;
 
-/// A vector field that changes from one smooth piece to the next on surfaces g(t, y, p) = 0: it jumps there or has a
-/// corner.
+/// A vector field that changes from one smooth piece to the next on surfaces g(t, y, p) = 0, on which it jumps or
+/// has a corner.
 ///
-/// An integrator holds it on one side of each surface during a step, so that f is smooth along the step, ends the step
-/// where a surface is reached, and decides there how the motion continues: on the other side, or along the surface if
-/// f leads back to it from both sides.
+/// An integrator holds the field on one side of each surface during a step, so that f is smooth along the step, ends
+/// the step where a surface is reached, and decides there how the motion continues: on the other side, or along the
+/// surface if f leads back to it from both sides.
 ///
 /// A side is 1 or −1, the sign of g, or 0 while the motion slides along the surface.
 pub trait Switching {
@@ -25,14 +25,14 @@ pub trait Switching {
     /// The sides on which f is held.
     fn held(&self) -> Option<&[f64]>;
 
-    /// Writes the functions g, which may jump where another one passes through zero: they are evaluated on the
-    /// sides held. A function without a value is written as NaN.
+    /// Writes the functions g, which may jump where another one passes through zero; all of them are evaluated
+    /// on the sides held. A function without a value is written as NaN.
     fn functions(&mut self, t: f64, y: &[f64], values: &mut [f64]);
 
     /// Writes f on these sides, none of them 0.
     ///
     /// # Errors
-    /// As [`rhs`](crate::VectorField::rhs).
+    /// The same as for [`rhs`](crate::VectorField::rhs).
     fn rates(&mut self, sides: &[f64], t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), Failure>;
 
     /// Returns ∂g/∂t of a surface, and writes ∂g/∂y.
@@ -41,7 +41,7 @@ pub trait Switching {
     /// ∂g/∂pⱼ of a surface; `None` if it was not derived.
     fn by_parameter(&mut self, surface: usize, parameter: usize, t: f64, y: &[f64]) -> Option<f64>;
 
-    /// The explicit dependence of f on t while it is held.
+    /// The explicit dependence of f on t while f is held.
     fn time_dependence(&self) -> TimeDependence;
 
     /// The program of the functions g of (t, y) and parameters, with the values of the parameters, if there

@@ -12,7 +12,7 @@ use crate::time_profile::steep::SteepFunctions;
 
 /// A first-order system ẏ = f(t, y) of [`dim`](VectorField::dim) equations.
 ///
-/// It is implemented by compiled equations of motion and by users; integrators need nothing else.
+/// This trait is implemented by compiled equations of motion and by users; integrators need nothing else.
 pub trait VectorField {
     /// Number of components of y.
     fn dim(&self) -> usize;
@@ -50,7 +50,8 @@ pub trait VectorField {
         None
     }
 
-    /// Writes the entries of ∂f/∂y that [`sparsity`](VectorField::sparsity) lists, in its order.
+    /// Writes the entries of ∂f/∂y in the pattern [`sparsity`](VectorField::sparsity), in the order of the
+    /// pattern.
     ///
     /// Called only if there is a [Jacobian](VectorField::has_jacobian) and a pattern.
     ///
@@ -134,23 +135,24 @@ pub trait VectorField {
         Ok(())
     }
 
-    /// The explicit dependence of f on t, whose features an integrator must not step over. It is
-    /// queried when an integration begins.
+    /// The explicit dependence of f on t, whose features an integrator must not step over. Integrators query
+    /// this dependence when an integration begins.
     fn time_dependence(&self) -> TimeDependence {
         TimeDependence::Unknown
     }
 
     /// The functions of the state in f whose rise and fall a step may miss, with f [held](VectorField::switching)
-    /// on one side if possible; `None` if there are no such functions, or if f does not expose them. They are
-    /// queried when an integration begins.
+    /// on one side if possible; `None` if there are no such functions, or if f does not expose them.
+    /// Integrators query these functions when an integration begins.
     fn steep_functions(&self) -> Option<SteepFunctions> {
         None
     }
 
-    /// The Taylor series of the motion, ready to be expanded, with its branch functions and its cost.
+    /// The Taylor series of the motion, ready to be expanded, with the branch functions and the cost of the
+    /// series.
     ///
     /// # Errors
-    /// [`Failure`] with the reason why there is none: f has to be a program.
+    /// [`Failure`] with the reason why there is no series: f has to be a program.
     fn series(&mut self) -> Result<&TaylorSeries, Failure> {
         Err(Failure::fatal(NoSeries))
     }
@@ -229,8 +231,8 @@ pub trait VectorField {
     }
 
     /// The surfaces, as far as they are known, on which f jumps as the state passes them, or as t passes them at a
-    /// time that depends on parameters. Jumps at a [break](VectorField::breaks) are not included, nor those where f is
-    /// [held](VectorField::switching).
+    /// time that depends on parameters. Jumps at a [break](VectorField::breaks), and jumps on surfaces where f is
+    /// [held](VectorField::switching), are not included.
     fn jumps(&self) -> &[RateJump] {
         &[]
     }
@@ -239,7 +241,7 @@ pub trait VectorField {
     /// step: a field may have barriers that no motion crosses.
     ///
     /// # Errors
-    /// [`Failure`] if the second does not follow from the first.
+    /// [`Failure`] if no motion leads from the first to the second.
     fn leads(&mut self, _from: (f64, &[f64]), _to: (f64, &[f64])) -> Result<(), Failure> {
         Ok(())
     }

@@ -24,9 +24,9 @@ pub enum ParseErrorKind {
     /// An operand is missing.
     #[error("expected an expression, found {found}")]
     ExpectedExpression {
-        /// The token found there, in words.
+        /// The token found in its place, in words.
         found: String,
-        /// Whether it is the second star of `**`.
+        /// Whether that token is the second star of `**`.
         power: bool,
     },
     /// A character that has no meaning in an expression.
@@ -71,7 +71,7 @@ pub enum ParseErrorKind {
     /// A number beyond the largest floating-point number.
     #[error("number out of range")]
     NumberOutOfRange,
-    /// Nesting beyond [`MAX_DEPTH`].
+    /// Nesting deeper than [`MAX_DEPTH`].
     #[error("the expression is nested deeper than {MAX_DEPTH} levels")]
     TooDeep,
 }

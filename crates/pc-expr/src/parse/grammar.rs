@@ -14,7 +14,7 @@ use crate::parse::vocabulary::{FUNCTIONS, Function, OTHER_NAMES, continues_name,
 /// The syntax tree of one expression.
 ///
 /// # Errors
-/// For the first part of the text that cannot belong to an expression, with its span.
+/// An error for the first part of the text that cannot belong to an expression, with the span of that part.
 pub fn parse(text: &str) -> Result<Ast, ParseError> {
     let mut parser = Parser {
         text,
@@ -79,7 +79,7 @@ struct Parser<'i> {
     /// The next token and its position.
     token: Token<'i>,
     span: Span,
-    /// Position of the token before it.
+    /// Position of the token before the next one.
     last: Span,
     depth: usize,
 }

@@ -3,7 +3,7 @@
 /// A function of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Function {
-    /// Its name, which is reserved.
+    /// The name of the function, which is reserved.
     pub name: &'static str,
     /// The number of its arguments.
     pub arguments: usize,

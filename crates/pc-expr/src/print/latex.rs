@@ -136,7 +136,7 @@ fn closed(factor: &str) -> String {
     }
 }
 
-/// The position after the brace that closes a group opened before the text.
+/// The position after the brace that closes a group opened before the text begins.
 fn end_of_group(text: &str) -> Option<usize> {
     let mut depth = 1;
     for (i, c) in text.char_indices() {

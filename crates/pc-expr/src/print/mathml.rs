@@ -20,12 +20,12 @@ const TIMES: &str = "<mo>&#x2062;</mo>";
 /// Between a function and an argument without brackets.
 const BARE: &str = "<mo>&#x2061;</mo><mspace width=\"0.17em\"/>";
 
-/// Functions whose power is written after their names.
+/// Functions whose exponents are written after their names.
 const RAISED: [Function; 6] =
     [Function::Sin, Function::Cos, Function::Sinh, Function::Cosh, Function::Tanh, Function::Log];
 
-/// `ω1` has the index 1, `x'` a dot, `x''` two; a name of several letters is upright, unless it is that of a
-/// Greek letter.
+/// `ω1` has the index 1, `x'` a dot, `x''` two; a name of several letters is upright, unless it is the name
+/// of a Greek letter.
 pub(super) fn symbol(name: &str) -> String {
     let Symbol { stem, dots, index } = Symbol::of(name);
     let stem = letters(stem);
@@ -51,7 +51,8 @@ fn letters(text: &str) -> String {
     }
 }
 
-/// A character as text of a page: names of reactions contain those of constraints, which may be any text.
+/// A character, escaped for the text of a page: names of reactions contain those of constraints, which may be
+/// any text.
 fn character(c: char) -> String {
     match c {
         '<' => "&lt;".to_owned(),
@@ -178,7 +179,7 @@ fn alone(mut factors: Vec<Piece>) -> String {
 const OPEN: &str = "<mrow><mo>(</mo>";
 const CLOSE: &str = "<mo>)</mo></mrow>";
 
-/// The row in brackets, which grow with it.
+/// The row in brackets that grow with it.
 pub(super) fn bracketed(row: &str) -> String {
     format!("{OPEN}{row}{CLOSE}")
 }

@@ -1,8 +1,8 @@
 //! Names for long or repeated parts of a page of expressions.
 //!
-//! Expressions share their parts, so that a page which writes all of them out may be as long as 2 to the
-//! power of their depth. Here such parts are named, each once, before they are used: just enough of them
-//! for every piece between two signs to fit on a line, and any others that shorten the page.
+//! Expressions share parts, so that a page on which all parts are written out may be as long as 2 to the
+//! power of the depth of the expressions. Here such parts are named, each once, before they are used: just
+//! enough of them for every piece between two signs to fit on a line, and any others that shorten the page.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -16,7 +16,8 @@ use crate::print::piece::Piece;
 use crate::print::style::Style;
 use crate::print::writer::{Writer, signed};
 
-/// Least widths at which a repeated part is named; the one that gives the shortest page is taken.
+/// Candidates for the least width at which a repeated part is named; the one that gives the shortest page is
+/// taken.
 const WORTH_A_NAME: [usize; 7] = [usize::MAX, 80, 48, 32, 24, 16, 12];
 /// The cost of a name to its reader, in characters.
 const PRICE: usize = 24;
@@ -41,7 +42,7 @@ pub struct Given<'g> {
 /// An expression to be written, with names for its parts.
 #[derive(Clone, Copy, Debug)]
 pub enum Side<'g> {
-    /// A line: a sum may continue on the next one, between two of its terms.
+    /// A line: a sum may be broken between two of its terms and continue on the next line.
     Sum(Expr<'g>),
     /// A part of a line, such as a coefficient, which must fit as a whole.
     Factor(Expr<'g>),
@@ -63,9 +64,9 @@ pub struct Name<'g> {
     pub name: String,
     /// Its value.
     pub value: Expr<'g>,
-    /// Whether it is one of those [`Given`] as a shorthand.
+    /// Whether the name was [`Given`] as a shorthand.
     pub shorthand: bool,
-    /// The number of the first line that uses it.
+    /// The number of the first line that uses the name.
     pub line: usize,
 }
 
@@ -125,7 +126,7 @@ impl<'g> Names<'g> {
         Names { graph, lines, list: list.into_iter().map(name).collect() }
     }
 
-    /// The names in order of first use; the meaning of each uses only earlier names.
+    /// The names in order of first use; the meaning of each name uses only earlier names.
     pub fn list(&self) -> &[Name<'g>] {
         &self.list
     }
@@ -204,7 +205,7 @@ impl Written {
         self.terms.get(&value.atom()).cloned().unwrap_or_else(|| vec![value.display(self.style)])
     }
 
-    /// An expression on the page as part of another one.
+    /// An expression on the page as part of another expression.
     pub fn text(&self, expression: Expr<'_>) -> String {
         match expression.atom() {
             Atom::Node(node) if self.pieces.contains_key(&node) => self.pieces[&node].text.clone(),
@@ -274,8 +275,8 @@ impl<'d, 'g> Page<'d, 'g> {
         pages.chain([plain]).min_by_key(|named| self.length(named).0).unwrap_or_default()
     }
 
-    /// The named nodes: shorthands, parts that recur and have at least this width, and those needed to fit
-    /// the lines; only the last of these if there is no such width.
+    /// The named nodes: shorthands, parts that recur and have at least this width, and those needed to make
+    /// the lines fit; only the latter if no width is given.
     fn named(&self, least: Option<usize>) -> FxHashSet<NodeId> {
         let mut writer = Writer::new(self.dag, Style::Book);
         let mut named = FxHashSet::default();

@@ -10,7 +10,7 @@ use crate::print::{book, latex, mathml};
 pub enum Style {
     /// The expression language, which the parser reads back.
     Text,
-    /// As a book sets it, in plain characters: `½ m v² cos(θ)`.
+    /// As in a book, in plain characters: `½ m v² cos(θ)`.
     Book,
     /// LaTeX for mathematics mode: Greek letters by name, `x'` as ẋ, digits of names as indices.
     Latex,

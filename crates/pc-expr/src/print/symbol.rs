@@ -50,7 +50,7 @@ pub(super) struct Symbol<'a> {
 /// The index of a symbol.
 pub(super) enum Index<'a> {
     None,
-    /// Set as it is.
+    /// A text that is set as it is.
     Plain(&'a str),
     /// A symbol itself: ω1 in p_ω1.
     Symbol(&'a str),

@@ -11,17 +11,17 @@ use crate::print::writer::Writer;
 
 /// Expressions that take more operations than this when written out get names for their parts.
 const LONG: u32 = 20_000;
-/// So do expressions whose parts have more bytes than this in total: nested parts can add up to the square of
-/// the whole.
+/// Expressions whose parts have more bytes than this in total also get such names: nested parts can add up to
+/// the square of the whole.
 const LARGE: usize = 16 << 20;
-/// The columns between two signs in such an expression.
+/// The greatest number of columns between two signs in such an expression.
 const ROOM: usize = 80;
 
 impl Expr<'_> {
-    /// The text in a style other than [`Display`](fmt::Display)'s.
+    /// The text in a style other than that of [`Display`](fmt::Display).
     ///
-    /// It is complete: parts of a long expression are defined after it, `z1 + 1/z1 where z1 = …`.
-    /// [`Graph::names`](crate::Graph::names) prints several expressions with common names.
+    /// The text is complete: parts of a long expression are defined after it, `z1 + 1/z1 where z1 = …`.
+    /// [`Graph::names`](crate::Graph::names) prints several expressions with shared names for their parts.
     pub fn display(self, style: Style) -> String {
         let Some(graph) = self.graph() else {
             return match self.atom() {

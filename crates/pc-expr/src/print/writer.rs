@@ -9,7 +9,7 @@ use crate::graph::number::Number;
 use crate::print::piece::{Binding, Piece, number};
 use crate::print::style::Style;
 
-/// The deepest nesting of sums that open into each other.
+/// The greatest depth of nested sums that are merged into the sum around them.
 const DEEP: usize = 60;
 
 /// A character that no name contains.
@@ -87,8 +87,8 @@ impl<'d> Writer<'d> {
         }
     }
 
-    /// The terms of a line with marks on those that are subtracted; a term that is added comes first. A
-    /// line may also end between the terms inside a bracket.
+    /// The terms of a line with marks on those that are subtracted; a term that is added comes first. A line
+    /// may also end between the terms inside brackets.
     pub(super) fn line(&self, id: NodeId) -> Vec<(bool, Piece)> {
         let (product, q) = match self.dag.node(id) {
             Node::Sum { constant, terms } => match *self.dag.terms(terms) {
@@ -116,7 +116,7 @@ impl<'d> Writer<'d> {
         positive_first(signed)
     }
 
-    /// An expression as part of others.
+    /// An expression as part of other expressions.
     pub(super) fn atom(&self, atom: Atom) -> Piece {
         match atom {
             Atom::Constant(c) => self.style.number(c),

@@ -15,8 +15,8 @@ enum Value {
 impl Program {
     /// The same program with these values in place of the parameters, which it no longer reads: operations
     /// on them alone are computed here, and operations that become superfluous because a value is 0 or 1 are
-    /// left out. It takes no more operations, and its results are the same to the last bit where they are
-    /// finite, up to the sign of zero.
+    /// left out. The new program takes no more operations, and its results are the same to the last bit where
+    /// they are finite, up to the sign of zero.
     ///
     /// Substituting numbers into expressions before they become a program may make it shorter or longer:
     /// the normal form multiplies them into sums, so a sum that is computed once in the free program and
@@ -43,7 +43,7 @@ impl Program {
         self.binding(&values)
     }
 
-    /// As [`bound`](Self::bound), for those parameters for which `value` gives a number.
+    /// Like [`bound`](Self::bound), but only for those parameters for which `value` gives a number.
     #[must_use]
     pub fn bound_where(&self, value: impl Fn(&str) -> Option<f64>) -> Program {
         let names = &self.names[self.names.len() - self.parameters..];

@@ -5,7 +5,7 @@ use std::fmt::{self, Write};
 use crate::program::program::Program;
 
 /// A number computed from the text that is written to it, the same in every run and on every machine (FNV-1a, 64
-/// bits). It detects accidental differences, not deliberate ones.
+/// bits). A digest detects accidental differences, not deliberate ones.
 ///
 /// ```
 /// use std::fmt::Write;
@@ -24,7 +24,7 @@ impl Digest {
         self.0
     }
 
-    /// Adds a name and its end.
+    /// Adds a name and a mark at its end.
     pub fn name(&mut self, name: &str) {
         let _ = write!(self, "{name}\0"); // writing to it cannot fail
     }

@@ -91,7 +91,7 @@ impl Program {
         self.without(&code, &absorbed)
     }
 
-    /// The program of only the first outputs.
+    /// The program that computes only the first outputs.
     ///
     /// # Panics
     /// If this program has fewer than `outputs` outputs.

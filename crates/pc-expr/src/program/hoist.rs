@@ -4,13 +4,13 @@ use rustc_hash::FxHashMap;
 
 use crate::program::program::{Instruction, Program, Register};
 
-/// The least number of operations to save, since reading their results also takes time.
+/// The least number of operations that are worth saving, since reading their results also takes time.
 const WORTH_IT: usize = 4;
 
 impl Program {
     /// This program divided into two: the first computes, from the `fixed` parameters alone, values that the
-    /// second reads after its parameters; it runs only when these have changed. `None` if that saves next to
-    /// nothing.
+    /// second reads after its parameters; the first has to run only when the `fixed` parameters have changed.
+    /// `None` if the division saves next to nothing.
     ///
     /// ```
     /// # use pc_expr::{Graph, Inputs, Interpreter, Kernel, Program};

@@ -18,7 +18,7 @@ impl Program {
     /// The program of `outputs`.
     ///
     /// # Errors
-    /// [`ExprError::UnboundSymbol`] if an output contains a symbol that is not among the inputs,
+    /// [`ExprError::UnboundSymbol`] if an output contains a symbol that is not among the inputs;
     /// [`ExprError::DivisionByZero`] if the graph met a division by an expression that is identically zero.
     pub fn new<'g>(
         graph: &'g Graph,

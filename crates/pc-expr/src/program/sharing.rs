@@ -111,7 +111,7 @@ impl SharedProducts {
         })
     }
 
-    /// Turns the pairs that most products share into factors. Returns whether there were any.
+    /// Turns the pairs that most products share into factors. Returns whether there were such pairs.
     fn extract_pairs(&mut self) -> bool {
         let mut occurrences: BTreeMap<(FactorId, FactorId), Vec<usize>> = BTreeMap::new();
         for (position, product) in self.products.iter().enumerate() {

@@ -9,7 +9,7 @@ use crate::taylor::assembler::Assembler;
 pub struct Normals<'a> {
     /// The derivatives.
     pub program: &'a Program,
-    /// Output, surface, and component: 0 for time, then those of the state.
+    /// Output, surface, and component, which is 0 for time and i + 1 for component i of the state.
     pub entries: &'a [(usize, usize, usize)],
 }
 

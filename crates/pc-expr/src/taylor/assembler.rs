@@ -33,7 +33,7 @@ impl Assembler {
         Register(STATE + i as u32)
     }
 
-    /// Component `i` of the state after those of [`state`](Assembler::state).
+    /// Component `i` of the sums, which follow the components of [`state`](Assembler::state).
     pub(crate) fn sum(i: usize) -> Register {
         Register(SUM + i as u32)
     }

@@ -26,13 +26,14 @@ use crate::program::program::Program;
 /// ```
 ///
 /// Where f contains |x|, sign, min, max or step, the series is that of one branch, given by the sign of each of
-/// the [branch functions](TaylorSeries::branches). It is the motion until one of these changes sign.
+/// the [branch functions](TaylorSeries::branches). The series is that of the motion until one of these
+/// functions changes sign.
 pub struct TaylorSeries {
     recurrences: Arc<Recurrences>,
     zeroth: Box<dyn Kernel>,
     next: Box<dyn Kernel>,
     sum: fn(Rows<'_>, usize, &mut [f64]),
-    /// The results of order 0, then a row for each order, from an offset aligned for vectors.
+    /// The results of order 0, then a row for each order, starting at an offset aligned for vectors.
     memory: Vec<f64>,
     begin: usize,
     /// The length of the results of order 0, and that of a row.

@@ -6,7 +6,7 @@ use crate::graph::function::Function;
 use crate::program::program::Register;
 
 impl Writer {
-    /// w with ẇ = u̇/v, from its value w₀.
+    /// w with ẇ = u̇/v, given its value w₀.
     fn integral(&mut self, zero: Register, u: Register, v: Term) -> Term {
         let inverse = self.reciprocal(v.zero);
         let Some(series) = v.next else {
@@ -36,7 +36,7 @@ impl Writer {
         Term { zero, next }
     }
 
-    /// w with ẇ = w u̇, from its value w₀.
+    /// w with ẇ = w u̇, given its value w₀.
     fn exponential(&mut self, zero: Register, u: Register) -> Term {
         let rising = self.rising(u);
         let sum = self.open_sum(Some(rising));

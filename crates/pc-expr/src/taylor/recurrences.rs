@@ -14,8 +14,9 @@
 //! w = ∫ du/v       w_k = (u_k − S(Dw, v)/k)/v₀      arctan: v = 1 + u²;  arcsin: v = √(1 − u²)
 //! w = arg(x + iy)  w_k = (x₀ y_k − y₀ x_k + (S(Dy, x) − S(Dx, y) − S(Dw, r²))/k)/r₀²
 //! ```
-//! All sums of one order are known before its coefficients are: they are computed together. Functions with
-//! corners or jumps are replaced by their present branch, with a factor σ: |u| = σ u.
+//! The sums of one order depend only on lower orders, so that all of them are computed together, before the
+//! coefficients of that order. Functions with corners or jumps are replaced by their present branch, with a
+//! factor σ: |u| = σ u.
 
 use std::sync::Arc;
 

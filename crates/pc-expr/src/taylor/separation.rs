@@ -170,7 +170,7 @@ impl RootSeparation {
         !given_up
     }
 
-    /// Whether no output has a root in an interval; whether none has more than one.
+    /// Whether no output has a root in an interval, and whether no output has more than one.
     fn look(&mut self, motion: PolynomialMotion<'_>, (a, b): (f64, f64)) -> (bool, bool) {
         let (middle, radius) = (0.5 * (a + b), 0.5 * (b - a).abs());
         self.set_motion(motion, middle, 0.0);

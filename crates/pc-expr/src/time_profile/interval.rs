@@ -22,7 +22,7 @@ impl Interval {
         Interval { lo: x, hi: x }
     }
 
-    /// The interval between two numbers; the whole line if one of them is NaN.
+    /// The interval between two numbers; the whole real line if one of them is NaN.
     pub(crate) fn between(a: f64, b: f64) -> Interval {
         if a.is_nan() || b.is_nan() { Interval::ALL } else { Interval { lo: a.min(b), hi: a.max(b) } }
     }
@@ -147,7 +147,7 @@ impl Interval {
     }
 }
 
-/// The interval with these computed ends; the whole line if one is NaN, such as ∞ − ∞.
+/// The interval with these computed ends; the whole real line if one of them is NaN, such as ∞ − ∞.
 fn ends(lo: f64, hi: f64) -> Interval {
     Interval {
         lo: if lo.is_nan() { f64::NEG_INFINITY } else { lo },

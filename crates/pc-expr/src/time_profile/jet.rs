@@ -17,7 +17,7 @@ impl Jet {
         Jet::line(Interval::point(x), 0.0)
     }
 
-    /// A function that goes through `value` at this rate.
+    /// A function that passes through `value` at this rate.
     pub(crate) fn line(value: Interval, rate: f64) -> Jet {
         Jet { value, rate: Interval::point(rate), bend: Interval::ZERO }
     }
@@ -121,7 +121,7 @@ impl Jet {
         }
     }
 
-    /// `a` where this is not negative, else `b`.
+    /// `a` where this function is not negative, else `b`.
     fn step(self, a: Jet, b: Jet) -> Jet {
         if self.value.lo >= 0.0 {
             a

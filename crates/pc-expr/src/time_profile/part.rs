@@ -8,11 +8,11 @@ use crate::program::program::{Instruction, Program, Register};
 /// How the value of a register changes with time.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct Motion {
-    /// Contains t.
+    /// The value contains t.
     pub(crate) time: bool,
-    /// It contains components of the state.
+    /// The value contains components of the state.
     pub(crate) state: bool,
-    /// It contains t other than in a linear function a t + b with fixed a and b.
+    /// The value contains t, other than in a linear function a t + b with fixed a and b.
     bent: bool,
 }
 
@@ -65,7 +65,7 @@ pub(crate) struct Part {
     time: usize,
     /// The components of the state that are read.
     states: Vec<usize>,
-    /// Room for the polynomial of a component about a point.
+    /// Room for the polynomial of a component, expanded about a point.
     local: Vec<f64>,
 }
 
@@ -226,7 +226,7 @@ impl Part {
         })
     }
 
-    /// The value of a register there.
+    /// The value of a register where the part was last enclosed.
     pub(crate) fn at(&self, register: usize) -> Jet {
         self.registers[register]
     }

@@ -1,10 +1,11 @@
 //! The explicit dependence of a vector field on time.
 //!
-//! An integrator evaluates f at the ends of its steps. A pulse or a switch between them, from t in f itself,
-//! leaves no trace there, and a body at rest is carried over it in one step. But a program of f shows where
-//! that is possible: over any interval of time its parts and their first two derivatives are enclosed by
-//! interval arithmetic [Moore 1966]. Where the enclosures show that a part is monotonic and bends only one
-//! way, nothing is hidden; otherwise the interval is halved. So no pulse is missed, however short.
+//! An integrator evaluates f at the ends of its steps. If f itself contains t, a pulse or a switch between
+//! these ends leaves no trace at them, and a body at rest is carried over it in one step. But a program of f
+//! shows where that is possible: its parts and their first two derivatives are enclosed by interval
+//! arithmetic over any interval of time [Moore 1966]. Where the enclosures show that a part is monotonic and
+//! bends only one way, nothing is hidden; otherwise the interval is halved. So no pulse is missed, however
+//! short.
 
 use crate::program::program::Program;
 use crate::time_profile::motion::PolynomialMotion;
@@ -48,7 +49,7 @@ impl TimeDependence {
         if explicit { TimeDependence::Known(Box::new(profile)) } else { TimeDependence::Absent }
     }
 
-    /// The same for times that are counted from `origin`.
+    /// The same dependence on time, for times that are counted from `origin`.
     #[must_use]
     pub fn since(self, origin: f64) -> TimeDependence {
         match self {
@@ -75,7 +76,8 @@ impl TimeDependence {
 
 /// Where the parts of f that contain t turn, bend, jump or have corners.
 ///
-/// Functions of t alone are followed wherever the motion goes; [`SteepFunctions`] are those of the state.
+/// Functions of t alone are followed wherever the motion goes; [`SteepFunctions`] are the functions of the
+/// state.
 /// ```
 /// use pc_expr::{Graph, Inputs, Program, TimeDependence};
 ///
@@ -112,8 +114,8 @@ impl TimeProfile {
     /// The times between `t` and `to`, in order, of features that are invisible at the two ends of that
     /// interval: jumps and corners, and the turns and bends of functions that may rise and fall in between.
     ///
-    /// If there are thousands, the list ends at one of them; with `enough`, the remaining time is examined
-    /// coarsely. Later calls continue from `to` or before, up to `end` and beyond.
+    /// If there are thousands of such times, the list ends at one of them; with `enough`, the remaining time
+    /// is examined coarsely. Later calls continue from `to` or before, up to `end` and beyond.
     pub fn surprises(&mut self, (t, to): (f64, f64), end: f64, enough: bool) -> &Surprises {
         let direction = if to < t { -1.0 } else { 1.0 };
         let origin = self.origin;

@@ -1,4 +1,4 @@
-//! Where functions of time turn, bend, jump and have corners, one after the other.
+//! Points at which functions of time turn, bend, jump or have corners, one after the other.
 
 use std::collections::VecDeque;
 
@@ -9,14 +9,16 @@ use super::part::Part;
 
 /// The number of pieces of a window over which the range of a function is first estimated.
 const PIECES: u32 = 32;
-/// A function that on a piece neither is monotonic nor bends only one way may vary there by this fraction
-/// of its range without closer examination.
+/// A function that is neither monotonic on a piece nor bends only one way may vary on it by this fraction of
+/// its range without closer examination.
 const FLAT: f64 = 1.0 / 64.0;
-/// The same for a function with one of the two properties: it has one turn or one inflection there.
+/// The same fraction for a function with one of the two properties: it has one turn or one inflection on the
+/// piece.
 const TURN: f64 = 0.25;
 /// A rise or fall is a piece on which a monotonic function changes by at least this fraction of its range.
 const RISE: f64 = 2.0 / PIECES as f64;
-/// Turns and inflections within this fraction of the range from the last one do not count.
+/// Turns and inflections do not count if the function has changed by less than this fraction of its range
+/// since the last one.
 const SWING: f64 = 1e-3;
 /// The rounding error of a value, with a margin.
 const ROUNDING: f64 = 1e-12;
@@ -25,7 +27,7 @@ const SHORTEST: f64 = 1e-13;
 /// The maximum number of evaluations in one query.
 const MOST: u32 = 20_000;
 /// If this many of the shortest pieces contain no jump, the function turns faster than floating-point
-/// times resolve: finding a jump takes some forty evaluations.
+/// times resolve: finding a jump takes about forty evaluations.
 const NOISE: u32 = MOST / 4;
 
 /// A time at which a function of time changes its behaviour.
@@ -63,7 +65,7 @@ impl Kind {
 /// What is known about one function so far.
 #[derive(Clone, Debug)]
 struct Track {
-    /// Its values over the window where they are finite, and how much it varies there.
+    /// The finite values of the function over the window, and how much it varies there.
     values: Option<Interval>,
     range: f64,
     rate: Sign,
@@ -77,7 +79,7 @@ struct Track {
     sharp: Option<f64>,
 }
 
-/// The last nonzero sign of a derivative, and up to where it is known.
+/// The last nonzero sign of a derivative, and the time up to which the sign is known.
 #[derive(Clone, Copy, Debug)]
 struct Sign {
     sign: i8,
@@ -99,8 +101,8 @@ impl Sign {
     }
 }
 
-/// The features of watched functions along a window, found as far as queried. Its buffers are reused for
-/// later windows, since there is one at each step.
+/// The features of watched functions along a window, found as far as queried. The buffers of a scan are
+/// reused for later windows, since each step has its own window.
 #[derive(Clone, Debug)]
 pub(crate) struct Scan {
     /// The time from which features are kept.

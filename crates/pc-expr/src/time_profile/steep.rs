@@ -18,25 +18,25 @@ use crate::program::program::{Instruction, Program, Register};
 const LONGEST: usize = 256;
 /// A function that is never 0 and changes by less than this factor hides nothing.
 const FACTOR: f64 = 10.0;
-/// Nor does a function with the range from −1 to 1 that changes by less than this.
+/// A function with values from −1 to 1 that changes by less than this hides nothing either.
 const CHANGE: f64 = 0.5;
 
 /// The evidence that a function hides nothing in an interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
-    /// It keeps its size, or only rises or falls: an exponential has no plateau.
+    /// The function keeps its size, or only rises or falls: an exponential has no plateau.
     Exponential,
-    /// The divisor, in this register, keeps its size, or only rises or falls far from its least possible value. A
-    /// dividend does not matter: it is not hidden, or is one of these functions itself.
+    /// The divisor, in this register, keeps its size, or only rises or falls far from its least possible value.
+    /// The dividend does not matter: it is not hidden, or is one of these functions itself.
     Reciprocal { divisor: usize, least: f64 },
-    /// It hardly changes.
+    /// The function hardly changes.
     Bounded,
     /// There is no such evidence for a function of time and state.
     Moving,
 }
 
 impl Kind {
-    /// The value that is watched for the function in a register.
+    /// The value that is watched to judge the function in a register.
     fn watch(self, place: usize) -> Watch {
         match self {
             Kind::Reciprocal { divisor, .. } => Watch::Reciprocal(divisor),
@@ -106,19 +106,19 @@ impl SteepFunctions {
         !moving.is_empty() && !is_followed(&Part::new(program, &parameters, moving), dim)
     }
 
-    /// The same for times that are counted from `origin`.
+    /// The same functions, for times that are counted from `origin`.
     #[must_use]
     pub fn since(self, origin: f64) -> SteepFunctions {
         SteepFunctions { origin: self.origin + origin, ..self }
     }
 
-    /// The same for states of `len` components that begin with those of y.
+    /// The same functions, for states of `len` components that begin with those of y.
     #[must_use]
     pub fn in_states_of(self, len: usize) -> SteepFunctions {
         SteepFunctions { dim: len, ..self }
     }
 
-    /// The functions among these that depend only on the first `len` components of the state; `None` if there
+    /// Those of the functions that depend only on the first `len` components of the state; `None` if there
     /// are none.
     #[must_use]
     pub fn of_components(mut self, len: usize) -> Option<SteepFunctions> {
@@ -126,8 +126,8 @@ impl SteepFunctions {
         (!self.parts.is_empty()).then_some(self)
     }
 
-    /// Whether one of them may hide something between two times along the motion: a first look, coarser than
-    /// [`surprises`](SteepFunctions::surprises).
+    /// Whether one of the functions may hide something between two times along the motion: a first look,
+    /// coarser than [`surprises`](SteepFunctions::surprises).
     pub fn hide(&mut self, (t, to): (f64, f64), motion: PolynomialMotion<'_>) -> bool {
         let (between, along) = self.counted((t, to), motion);
         self.parts.iter_mut().any(|followed| !followed.is_quiet(between, along))
@@ -136,7 +136,8 @@ impl SteepFunctions {
     /// The times between `t` and `to`, in order, at which values and rates at these two times may not show what a
     /// function does in between, along the motion.
     ///
-    /// If there are thousands, the list ends at one of them; with `enough`, the remaining time is examined coarsely.
+    /// If there are thousands of such times, the list ends at one of them; with `enough`, the remaining time is
+    /// examined coarsely.
     pub fn surprises(
         &mut self,
         (t, to): (f64, f64),
@@ -191,7 +192,7 @@ impl Followed {
         is_followed.then(|| Followed { watched: Watched { part, scan: Scan::new() }, kinds, loud })
     }
 
-    /// Whether none of them hides anything between two times along a motion.
+    /// Whether none of the functions hides anything between two times along a motion.
     fn is_quiet(&mut self, between: (f64, f64), along: (PolynomialMotion<'_>, usize)) -> bool {
         let part = &mut self.watched.part;
         self.loud.fill(true);

@@ -1,4 +1,5 @@
-//! The times in an interval at which watched functions show what their values at its ends do not.
+//! The times in an interval at which watched functions show what their values at the ends of the interval do
+//! not.
 
 use super::motion::PolynomialMotion;
 use super::part::Part;
@@ -10,11 +11,11 @@ const FEW: usize = 32;
 /// Times of features that are invisible at the two ends of an interval, in order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surprises {
-    /// Features of functions with at most 32 of them.
+    /// Times of the features of functions that have at most 32 features.
     pub few: Vec<f64>,
-    /// Features of functions with more, such as fast oscillations.
+    /// Times of the features of functions that have more, such as fast oscillations.
     pub many: Vec<f64>,
-    /// The time up to which they are known, if it is not the end of the interval.
+    /// The time up to which the features are known, if that is not the end of the interval.
     pub until: Option<f64>,
     /// Whether some function of t turns faster than floating-point times can resolve.
     pub noise: bool,
@@ -127,7 +128,7 @@ impl Seen {
         }
     }
 
-    /// Whether the values and rates at both ends may fail to show what happens between.
+    /// Whether the values and rates at both ends may fail to show what happens in between.
     fn hides(self) -> bool {
         self.sharp > 0 || self.turns > 1 || self.bends > 1 || self.turns == 1 && self.bends + self.unsure > 0
     }

@@ -58,7 +58,7 @@ pub(super) struct Code {
     address: usize,
     /// Owned but never read; the mutex makes it `Sync`.
     _assembly: Mutex<Assembly>,
-    /// Read by the code.
+    /// Constants read by the code.
     _constants: Box<[f64]>,
 }
 

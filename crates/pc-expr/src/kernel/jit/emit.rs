@@ -202,7 +202,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// The next operand, loaded unless it is in a machine register, and whether it stays in one.
+    /// The next operand, loaded unless it is in a machine register, and whether it stays there.
     fn operand(&mut self, register: Register) -> (Value, bool) {
         let r = register.index();
         let Stay { held, dies } = self.plan.stays[self.values.read];
@@ -362,7 +362,7 @@ impl Emitter<'_> {
         self.b.ins().f64const(value)
     }
 
-    /// Calls a function of numbers at an address.
+    /// Calls the function at an address; its arguments and its result are numbers.
     fn call(&mut self, address: usize, args: &[Value]) -> Value {
         let mut signature = Signature::new(self.host.convention());
         signature.params.extend(args.iter().map(|_| AbiParam::new(types::F64)));

@@ -2,8 +2,8 @@
 //!
 //! On x86-64 an offset of less than 128 bytes from an address in a register takes one byte of an
 //! instruction, a larger one takes four; and code too long for the instruction cache runs several
-//! times slower. So memory is divided into windows of 256 bytes, with the address of the middle of
-//! each in a register.
+//! times slower. So memory is divided into windows of 256 bytes, with the address of the middle of each
+//! window in a register.
 
 use cranelift_codegen::cursor::{Cursor, FuncCursor};
 use cranelift_codegen::ir::{Block, InstBuilder, MemFlagsData, Value, types};
@@ -23,8 +23,8 @@ pub(super) enum Area {
 }
 
 impl Area {
-    /// Number of windows with a register; memory beyond them is addressed from the last one.
-    /// Together they leave registers free.
+    /// Number of windows with a register; memory beyond these windows is addressed from the last one.
+    /// The windows of all areas together leave some registers free.
     fn windows(self) -> u32 {
         match self {
             Area::Scratch => 6,

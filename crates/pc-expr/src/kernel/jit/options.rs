@@ -5,7 +5,7 @@
 pub struct JitOptions {
     /// Fuse products into sums if the processor has fused multiply-add.
     ///
-    /// Without this and `inline_trig`, results equal those of the
+    /// Without `fma` and `inline_trig`, results equal those of the
     /// [`Interpreter`](crate::Interpreter) bit for bit.
     pub fma: bool,
     /// Compute sines and cosines inline, to 2 units in the last place, if the processor has fused

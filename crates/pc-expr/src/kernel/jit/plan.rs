@@ -1,11 +1,10 @@
 //! The order of computation, and which values stay in memory.
 //!
-//! Straight-line code of thousands of operations does not fit into sixteen registers, and register
-//! allocators spill it badly. So the order is chosen here: depth first from the outputs, the
-//! operand that needs more registers first. The values that stay in memory are also chosen here:
-//! whenever there are too many for the registers, the one whose next use is furthest away goes to
-//! memory (Belady, IBM Systems Journal 5 (1966) 78), which for straight-line code minimises the
-//! number of loads.
+//! The values of straight-line code with thousands of operations do not fit into sixteen registers, and
+//! register allocators spill them badly. So the order is chosen here: depth first from the outputs, with the
+//! operand that needs more registers first. The values that stay in memory are also chosen here: whenever
+//! there are too many for the registers, the value whose next use is furthest away goes to memory (Belady,
+//! IBM Systems Journal 5 (1966) 78), which for straight-line code minimises the number of loads.
 
 use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};
@@ -14,7 +13,7 @@ use super::options::JitOptions;
 
 /// Programs with more instructions than this are divided into several functions.
 const WHOLE: usize = 50_000;
-/// Number of following circles among which a partner is sought for a circle.
+/// How many of the circles that follow a circle are examined when a partner is sought for it.
 const PARTNERS: usize = 8;
 
 /// The sine and the cosine of an argument, as far as they are needed.
@@ -82,13 +81,13 @@ pub(super) struct Plan {
 /// Whether an operand is in a machine register before and after its use.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stay {
-    /// Whether it is in a machine register before its use.
+    /// Whether the operand is in a machine register before its use.
     pub(super) held: bool,
-    /// Whether it is no longer kept there after its use.
+    /// Whether the operand is no longer kept in a machine register after its use.
     pub(super) dies: bool,
 }
 
-/// The number that means no further use.
+/// The number that stands for no further use.
 const NEVER: u32 = u32::MAX;
 
 impl Plan {
@@ -211,7 +210,8 @@ impl MachineRegisters {
         }
     }
 
-    /// Keeps `value`, next used at step `next`, if there is room or another value is used later.
+    /// Keeps `value`, next used at step `next`, if there is room or if another held value is next used even
+    /// later.
     fn keep(&mut self, value: usize, next: u32) {
         if let Some(place) = self.values.iter().position(|&r| r == value) {
             self.next[value] = next;

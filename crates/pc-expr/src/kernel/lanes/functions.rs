@@ -1,8 +1,8 @@
 //! Functions in lanes.
 //!
 //! sin and cos are computed inline with errors below 2 units in the last place, exp and log below
-//! 1.5; √, min, max, |x|, sign and step are operations; the others are called lane by lane. For an
-//! argument outside the range of the inline code, the library computes the function in that lane.
+//! 1.5; √, min, max, |x|, sign and step are operations; the others are called lane by lane. In a lane whose
+//! argument is outside the range of the inline code, the library computes the function.
 
 use super::tape::{Binary, Fused, LaneTape, LaneValue};
 use crate::graph::function::Function;
@@ -28,7 +28,7 @@ const LOG: [f64; 7] = [
     1.531_383_769_920_937_3e-1,
     1.479_819_860_511_658_6e-1,
 ];
-/// The upper half of the bits of √½, for splitting numbers into 2ᵏ m with m around 1.
+/// The upper half of the bits of √½, for splitting numbers into 2ᵏ m with m near 1.
 const ROOT_OF_HALF: u64 = 0x3fe6_a09e << 32;
 
 impl LaneTape {
@@ -64,7 +64,7 @@ impl LaneTape {
         self.binary(Binary::And, a, rest)
     }
 
-    /// The value of the function, whose arguments are the first of these three.
+    /// The value of the function; it takes its arguments from the first of these three.
     pub(super) fn function(&mut self, function: Function, arguments: [LaneValue; 3]) -> LaneValue {
         let [x, y, z] = arguments;
         let zero = self.constant(0.0);

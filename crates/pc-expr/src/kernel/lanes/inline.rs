@@ -9,7 +9,7 @@ impl LaneTape {
     /// state and parameters; returns its outputs.
     ///
     /// # Panics
-    /// Unless the lengths are those of the program.
+    /// If the numbers of state components and of parameters are not those of the program.
     pub fn inline(
         &mut self,
         program: &Program,

@@ -1,6 +1,6 @@
 //! Instruction sets for lanes.
 
-/// The instruction set of a [`LaneKernel`](crate::LaneKernel). All give the same results.
+/// The instruction set of a [`LaneKernel`](crate::LaneKernel). All instruction sets give the same results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InstructionSet {
     /// Vectors of eight numbers: AVX-512 F and DQ.

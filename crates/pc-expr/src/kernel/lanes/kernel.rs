@@ -10,8 +10,8 @@ use super::tape::{LANES, LaneTape, Lanes};
 
 /// A [`LaneTape`] that can be run, by machine code if it is available for this processor.
 ///
-/// The results of a lane depend only on its own inputs, bit for bit the same whatever the other lanes
-/// hold and on any processor; only functions that are not computed inline depend on the system's
+/// The results of a lane depend only on its own inputs: they are the same, bit for bit, whatever the other
+/// lanes hold and on any processor; only functions that are not computed inline depend on the system's
 /// library. (The bits of a NaN may differ.) Clones share the code.
 #[derive(Clone, Debug)]
 pub struct LaneKernel {
@@ -30,7 +30,8 @@ impl LaneKernel {
         kernels.next().unwrap_or_else(|| unreachable!("the last needs nothing"))
     }
 
-    /// A kernel with these instructions; `None` if this processor lacks them, or memory cannot be allocated.
+    /// A kernel with these instructions; `None` if this processor lacks these instructions, or if memory
+    /// cannot be allocated.
     pub fn with_instructions(tape: LaneTape, set: InstructionSet) -> Option<LaneKernel> {
         LaneKernel::of(Arc::new(tape), set)
     }
@@ -52,7 +53,7 @@ impl LaneKernel {
         (set == InstructionSet::Portable).then_some(LaneKernel { tape, set })
     }
 
-    /// Its instruction set.
+    /// The instruction set of this kernel.
     pub fn instructions(&self) -> InstructionSet {
         self.set
     }
@@ -104,8 +105,7 @@ impl LaneKernel {
         }
     }
 
-    /// Computes the lanes of a vector again, at least one of which is outside the range of inline
-    /// functions.
+    /// Computes the lanes of a vector again if at least one of them is outside the range of inline functions.
     #[cfg(all(feature = "jit", target_arch = "x86_64", unix))]
     #[cold]
     fn again(&self, frame: &mut [Lanes], first: usize, width: usize) {

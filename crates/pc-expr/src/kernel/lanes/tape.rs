@@ -2,8 +2,9 @@
 //!
 //! The results of all operations are determined to the last bit: the four arithmetic operations,
 //! square roots and fused multiply-add, each rounded once; comparisons, and operations on the bits.
-//! Functions are composed of them in the same way for every kernel. So the result of a lane depends
-//! only on its own inputs: neither on the other lanes nor on the instructions of the processor.
+//! Functions are composed of these operations in the same way for every kernel. So the result of a lane
+//! depends only on its own inputs: it does not depend on the other lanes or on the instructions of the
+//! processor.
 
 use rustc_hash::FxHashMap;
 
@@ -47,7 +48,7 @@ pub enum Binary {
     Divide,
     /// a where a < b, else b, also where one of them is NaN
     Lesser,
-    /// a where a > b, else b, likewise
+    /// a where a > b, else b, also where one of them is NaN
     Greater,
     /// bitwise and
     And,
@@ -250,7 +251,7 @@ impl LaneTape {
     /// Writes a value to the row of an input, after everything has been read.
     ///
     /// # Panics
-    /// If `input` is not an input, or `value` is one.
+    /// If `input` is not an input, or if `value` is an input.
     pub fn replace(&mut self, input: LaneValue, value: LaneValue) {
         let Node::Input(row) = self.nodes[input.index()] else { panic!("an input is replaced") };
         assert!(!matches!(self.nodes[value.index()], Node::Input(_)), "by a result");

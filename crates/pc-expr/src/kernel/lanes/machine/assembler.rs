@@ -5,13 +5,13 @@ use iced_x86::{Code, Encoder, Instruction, MemoryOperand, Register};
 use super::super::instruction_set::InstructionSet;
 use super::super::tape::LANES;
 
-/// Registers for the address of the frame, that of the constants, and the mask of lanes out of
-/// range; calls preserve them.
+/// Registers for the address of the frame, the address of the constants, and the mask of lanes out of range;
+/// calls preserve these registers.
 const FRAME: Register = Register::RBX;
 const POOL: Register = Register::R12;
 pub(super) const NOTED: Register = Register::R13D;
 
-/// A vector register by its number.
+/// A vector register, given by its number.
 pub(super) type Vector = u8;
 
 /// Where a value is in memory.
@@ -30,7 +30,7 @@ pub(super) enum Last {
     Memory(Home),
 }
 
-/// An instruction that does not exist; no program leads to it.
+/// An instruction that does not exist; no program produces it.
 #[derive(Debug, thiserror::Error)]
 #[error("an instruction could not be encoded: {0}")]
 pub(crate) struct EncodeError(#[from] iced_x86::IcedError);

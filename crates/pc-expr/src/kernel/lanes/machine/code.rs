@@ -10,7 +10,7 @@ use super::assembler::EncodeError;
 use super::emit::{Emitted, emit};
 use crate::graph::function::Function;
 
-/// Takes a frame, from the first lane of a vector on, and the constants; returns the lanes that are
+/// Takes a frame, starting at the first lane of a vector, and the constants; returns the lanes that are
 /// out of range.
 type Enter = unsafe extern "sysv64" fn(*mut f64, *const f64) -> u32;
 
@@ -63,8 +63,8 @@ impl Code {
         self.memory.len()
     }
 
-    /// Runs the code; for each vector with a lane out of range calls `again` with its first lane
-    /// and its width, while the inputs are still unchanged.
+    /// Runs the code; for each vector with a lane out of range, calls `again` with the first lane and the
+    /// width of that vector, while the inputs are still unchanged.
     ///
     /// # Panics
     /// If the frame has too few rows.

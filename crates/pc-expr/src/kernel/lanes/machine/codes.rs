@@ -16,7 +16,7 @@ pub(super) enum Form {
     Sum,
 }
 
-/// An instruction of two operands; with the predicate for a comparison.
+/// An instruction with two operands; a comparison also has its predicate.
 pub(super) fn binary(set: InstructionSet, operation: Binary) -> (Code, Option<u32>) {
     let wide = set == InstructionSet::Avx512;
     let pick = |avx512, avx2| (if wide { avx512 } else { avx2 }, None);
@@ -59,7 +59,7 @@ pub(super) fn binary(set: InstructionSet, operation: Binary) -> (Code, Option<u3
     }
 }
 
-/// Whether a and b may be exchanged.
+/// Whether the operands a and b may be exchanged.
 pub(super) fn commutes(operation: Binary) -> bool {
     matches!(
         operation,

@@ -222,7 +222,7 @@ impl Emitter<'_> {
         Ok((i, d))
     }
 
-    /// One of two operands in a register, the other possibly in memory, and whether they are
+    /// One of two operands in a register and the other possibly in memory, and whether the two have been
     /// exchanged.
     fn pair(&mut self, a: u32, b: u32) -> Result<(Vector, Last, bool), EncodeError> {
         let swaps = self.registers.place(a).is_none() && self.registers.place(b).is_some();

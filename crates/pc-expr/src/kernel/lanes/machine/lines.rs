@@ -20,7 +20,7 @@ pub(super) struct Lines {
     /// itself.
     same_as: Vec<u32>,
     /// The lines that read each value. Each value that is [written last](Lines::written_last) is read by a
-    /// separate line after all others, so that it is kept until then.
+    /// separate line after all others, so that it is kept until the end.
     pub(super) uses: Vec<Vec<u32>>,
 }
 

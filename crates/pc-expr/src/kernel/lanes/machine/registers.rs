@@ -1,6 +1,6 @@
 //! Allocation of registers.
 //!
-//! If none is free, the value with the latest next use is evicted [Belady 1966], and stored unless
+//! If no register is free, the value with the latest next use is evicted [Belady 1966], and stored unless
 //! it is in memory already.
 
 use super::assembler::{Assembler, EncodeError, Home, Last, Vector};
@@ -21,7 +21,7 @@ pub(super) struct Registers {
     /// The lines that read each value, and how many of them have passed.
     uses: Vec<Vec<u32>>,
     over: Vec<usize>,
-    /// Rows that are free again, and the first that was never used.
+    /// The rows that are free again, and the first row that was never used.
     free_rows: Vec<u32>,
     next_row: u32,
     /// Whether a value has a row that becomes free after its last use.
