@@ -176,8 +176,9 @@
 //!
 //! # Around it
 //!
-//! Below: [`pc_mech`], the systems on which constraints act. Above: [pc-model](../pc_model/index.html), which classifies the constraints
-//! of a text model, and [pc-analysis](../pc_analysis/index.html), which finds invariant measures and Chaplygin's multiplier.
+//! Below: [`pc_mech`], which provides the systems on which constraints act. Above: [pc-model](../pc_model/index.html), which classifies
+//! the constraints of a text model, and [pc-analysis](../pc_analysis/index.html), which finds invariant measures and Chaplygin's
+//! multiplier.
 
 mod classification;
 mod error;

@@ -211,8 +211,8 @@ impl<'g> Search<'_, 'g> {
         Some(basis.into_iter().map(|(form, _)| form).collect())
     }
 
-    /// The forms solved for the differentials of the first variables, in this order, that they determine; each of
-    /// these has the coefficient 1 in one form and 0 in the others.
+    /// The forms solved for the differentials of the first variables, in this order, that the forms determine;
+    /// each such differential has the coefficient 1 in one form and 0 in the others.
     fn solved(&self, mut forms: Vec<Form<'g>>, order: &[usize]) -> Vec<Form<'g>> {
         let mut done = 0;
         for &place in order {

@@ -9,10 +9,10 @@ const MOST_STEPS: usize = 60;
 /// The largest number of times that a step is shortened if it brings no improvement.
 const SHORTENINGS: usize = 12;
 
-/// The residual, in units of displacements, that rounding errors leave of satisfied conditions.
+/// The residual, in units of displacements, that rounding errors leave in conditions that are satisfied.
 const SATISFIED: f64 = 1e-11;
 
-/// The relative amount by which coordinates are varied.
+/// The relative amount by which the coordinates are varied.
 const VARIED: f64 = 0.01;
 
 /// Coordinates smaller than this fraction of the largest are varied as if they were of that size.

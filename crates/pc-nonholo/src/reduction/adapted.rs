@@ -23,7 +23,8 @@ impl<'g> Adapted<'g> {
     ///
     /// The dependent quasi-velocities are those that the constraints determine best at the values `at` of time,
     /// coordinates, quasi-velocities and parameters; if a constraint says that a quasi-velocity vanishes, that
-    /// one is dependent. The frame is singular where the constraints do not determine these quasi-velocities.
+    /// quasi-velocity is dependent. The frame is singular where the constraints do not determine these
+    /// quasi-velocities.
     ///
     /// # Errors
     /// [`NonholoError::Nonlinear`]; [`NonholoError::Mech`], where

@@ -145,7 +145,7 @@ impl<'g> Voronets<'g> {
     }
 
     /// The system of the independent velocities whose equations (9) are (35): its Lagrangian is θ + U, and the terms
-    /// that are lost by substituting the constraints are added to the forces.
+    /// that are lost when the constraints are substituted are added to the forces.
     ///
     /// # Errors
     /// [`NonholoError::Mech`] if the parts were inconsistent, which cannot happen.
