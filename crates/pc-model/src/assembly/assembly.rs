@@ -116,19 +116,19 @@ impl<'g> Assembly<'g> {
         self.placed(self.constraints.free_system(&self.system, &self.at_start()))
     }
 
-    /// Each quasi-velocity of the system as a function of time, coordinates and the `free` quasi-velocities:
-    /// those of a [free system](Assembly::free_system), or all.
+    /// Each quasi-velocity of the system as a function of time, coordinates and the `free` quasi-velocities,
+    /// which are either those of a [free system](Assembly::free_system) or all.
     ///
     /// # Errors
-    /// [`ModelError`] if these do not determine the others.
+    /// [`ModelError`] if the `free` quasi-velocities do not determine the others.
     pub fn quasi_velocities_of(&self, free: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, ModelError> {
         self.placed(self.constraints.quasi_velocities_of(self.system.quasi_velocities(), free))
     }
 
     /// Whether it is proved that the motion conserves its energy (that of all velocities if multipliers
     /// enforce constraints, otherwise that of the free ones): dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s
-    /// vanishes where the constraints hold, and these are homogeneous in the velocities, so that their
-    /// reactions do no work.
+    /// vanishes where the constraints hold, and the constraints are homogeneous in the velocities, so that
+    /// their reactions do no work.
     pub fn keeps_energy(&self) -> bool {
         let (system, graph) = (&self.system, self.system.graph());
         match self.constraints.formulation() {

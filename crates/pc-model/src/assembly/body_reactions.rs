@@ -21,8 +21,8 @@ struct Resultants<'g> {
 
 impl<'g> Assembler<'g, '_> {
     /// The system with the forces and torques of the reactions on bodies substituted in its integrals and
-    /// outputs, and added to the outputs if all reactions are to be observed; then descriptions of the
-    /// undetermined reactions.
+    /// outputs; they are also added to the outputs if all reactions are to be observed; then descriptions of
+    /// the undetermined reactions.
     ///
     /// # Errors
     /// [`MeaningError::ForceNotDetermined`] if the model names an undetermined reaction.

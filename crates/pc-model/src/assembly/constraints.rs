@@ -79,8 +79,8 @@ impl<'g> Assembler<'g, '_> {
         name
     }
 
-    /// The treatment of the constraints, and the start that satisfies them; `at` are values of all symbols
-    /// there, and the first `prescribed` quasi-velocities determine the others.
+    /// The treatment of the constraints, and the start that satisfies them; `at` are the values of all
+    /// symbols at the start, and the first `prescribed` quasi-velocities determine the others.
     pub(super) fn treatment(
         &self,
         system: &System<'g>,
@@ -191,8 +191,8 @@ impl<'g> Assembler<'g, '_> {
         Ok(Some(Reacting { system, multipliers, undetermined }))
     }
 
-    /// The cheapest formulation: without the vanishing quasi-velocities if each constraint only says that one
-    /// of them vanishes, otherwise with multipliers.
+    /// The cheapest formulation: without the vanishing quasi-velocities if each constraint only makes one
+    /// quasi-velocity vanish, otherwise with multipliers.
     fn choose(
         &self,
         Reacting { system, multipliers, undetermined }: Reacting<'g>,

@@ -1,4 +1,4 @@
-//! Joints whose motion no inertia resists.
+//! Checks for joints whose motion no inertia resists.
 
 use pc_mech::Expr;
 
@@ -21,7 +21,8 @@ enum Way {
 }
 
 impl<'g> Assembly<'g> {
-    /// Checks that some inertia resists each joint by itself: ∂²L/∂η_s² vanishes for a point mass on its axis.
+    /// Checks that some inertia resists the motion of each joint by itself: ∂²L/∂η_s² vanishes, for example,
+    /// if a body that turns about an axis is a point mass on that axis.
     ///
     /// Constraints may take the place of inertia, and so may a kinetic energy in `[lagrangian]`; models that have
     /// either are not checked here.

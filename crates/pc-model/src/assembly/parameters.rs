@@ -14,7 +14,7 @@ use crate::document::{Document, Expression, InputValue, Name};
 use crate::names::scope::Scope;
 
 /// The values of the parameters of a model, then of its inputs, in the order of declaration. A value given by
-/// an expression in earlier ones is updated with these until it is itself set.
+/// an expression in earlier values is updated whenever they change, until it is itself set.
 #[derive(Clone, Debug)]
 pub struct Parameters {
     values: Vec<f64>,

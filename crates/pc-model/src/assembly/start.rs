@@ -106,11 +106,11 @@ impl<'g> Assembler<'g, '_> {
 
     /// The values at the start of the coordinates and of all quasi-velocities `eta` of the frame.
     /// Quasi-velocities that are not given are determined from given velocities, b η + b_0 = x', and from the
-    /// constraints; if these leave them open, the declared ones are zero.
+    /// constraints; declared quasi-velocities that these leave open are zero.
     ///
     /// # Errors
-    /// [`MeaningError::StartVelocity`] for a velocity that the others contradict; [`MeaningError::StartOpen`]
-    /// if the quasi-velocities that complete the definitions are left open.
+    /// [`MeaningError::StartVelocity`] for a velocity that the other velocities contradict;
+    /// [`MeaningError::StartOpen`] if the quasi-velocities that complete the definitions are left open.
     pub(super) fn start_state(
         &self,
         frame: &Frame<'g>,
@@ -170,7 +170,7 @@ impl<'g> Assembler<'g, '_> {
     }
 
     /// The equations C η = −c_0 of the constraints that have values, with rows scaled to length one, so that
-    /// velocities are compared whatever the scale of a constraint.
+    /// the scale of a constraint does not affect how velocities are compared.
     fn conditions(
         &self,
         frame: &Frame<'g>,
@@ -266,7 +266,7 @@ impl Equations {
         known.fold(0.0, |largest, (value, _)| largest.max(value.abs()))
     }
 
-    /// The part of an equation that is independent of those already present.
+    /// The part of an equation that is independent of the equations already present.
     fn rest(&self, row: &[f64], value: f64) -> (Vec<f64>, f64) {
         let (mut rest, mut missing) = (row.to_vec(), value);
         // Two passes are enough.

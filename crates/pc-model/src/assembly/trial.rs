@@ -7,13 +7,13 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::model::model::Model;
 
-/// A start is considered to satisfy a constraint, up to the rounding of its digits, if a displacement of a coordinate or velocity
-/// by less than this fraction of it would make it do so. Small coordinates may be off by as much as larger ones in the constraint,
-/// and by as much as a coordinate of size 1.
+/// A start is considered to satisfy a constraint, up to the rounding of its digits, if changing a coordinate or velocity by less
+/// than this fraction of its value would make the start satisfy it exactly. Small coordinates may be off by as much as larger ones
+/// in the constraint, and by as much as a coordinate of size 1.
 const OFF: f64 = 1e-8;
 
 /// If all coordinates in a constraint are smaller than this, they are presumably in other units, and 1 is not
-/// a measure for them.
+/// a measure of their size.
 const SMALL: f64 = 1e-2;
 
 /// A coordinate may always be off by this times [`OFF`]: the rounding error of numbers of order one, such as cos(π/2).
@@ -157,7 +157,8 @@ impl<'g> Trial<'_, 'g> {
         }
     }
 
-    /// If the constraint or its rate does not vanish, a phrase that says which of the two, and its value.
+    /// If the constraint or its rate does not vanish, a phrase that says which of the two it is, and its
+    /// value.
     fn off(&self, constraint: &Constraint<'g>, state: &[f64]) -> Option<(&'static str, f64)> {
         let x = self.system.frame().coordinates();
         let eta = self.system.quasi_velocities();

@@ -42,7 +42,7 @@ fn on_one_line(text: &str) -> String {
     text.replace(is_hidden, "\u{fffd}")
 }
 
-/// The text, shortened if it is very long, as with names of a thousand letters.
+/// The text, shortened if it is very long, such as a name of a thousand letters.
 fn clipped(text: &str) -> String {
     match text.char_indices().nth(500) {
         Some((cut, _)) => format!("{}…", &text[..cut]),

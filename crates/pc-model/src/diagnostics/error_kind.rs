@@ -41,7 +41,7 @@ pub enum ErrorKind {
         what: Spent,
         /// The stage of the work.
         stage: &'static str,
-        /// The number of expressions made.
+        /// The number of expressions created so far.
         nodes: usize,
     },
     /// The file is empty.
@@ -92,7 +92,7 @@ pub enum ErrorKind {
     WrongLength {
         /// A phrase that says what the list should contain.
         expected: &'static str,
-        /// The number of elements it has.
+        /// The number of elements that the list has.
         found: usize,
         /// How the entry could be written.
         example: &'static str,
@@ -120,7 +120,7 @@ pub enum ErrorKind {
     OfOtherJoints {
         /// Its key.
         key: String,
-        /// What could be written instead, or with it.
+        /// What could be written instead of the entry, or in addition to it.
         example: &'static str,
     },
     /// A name that is not that of a body with a joint.
@@ -160,7 +160,7 @@ pub enum ErrorKind {
         first: &'static str,
         /// The other.
         second: &'static str,
-        /// A hint that says when to use which of them.
+        /// A hint that says when to use each of them.
         help: &'static str,
     },
     /// A key that should be a name but is not.
@@ -181,14 +181,14 @@ pub enum ErrorKind {
         /// The name.
         name: String,
     },
-    /// One name given to two things.
+    /// A name given to two things.
     #[error("`{name}` is already the name of {first} (line {line})")]
     NameTaken {
         /// The name.
         name: String,
-        /// What was first given this name.
+        /// What this name was given to first.
         first: Role,
-        /// The line of the first of them.
+        /// The line on which the first of the two is declared.
         line: usize,
     },
     /// A key of `brackets` that is not a pair.
@@ -278,7 +278,7 @@ pub enum Role {
     Output,
     /// A constant of `[hamilton_jacobi]`.
     Constant,
-    /// A component of a point, of `[points.NAME]` or of `[loops.NAME]`.
+    /// A component of a point from `[points.NAME]` or `[loops.NAME]`.
     Point,
     /// An entry of `[constraints]`.
     Constraint,

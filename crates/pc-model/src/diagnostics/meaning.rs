@@ -4,7 +4,7 @@ use pc_mech::acts_as_zero;
 
 use crate::diagnostics::words::{against, at, listed, rounded, undetermined_text};
 
-/// An error in the meaning of a model; quasi-velocities stand for their operators.
+/// An error in the meaning of a model; operators are denoted by their quasi-velocities.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeaningError {
@@ -43,7 +43,7 @@ pub enum MeaningError {
     NotReset {
         /// The name.
         name: String,
-        /// A phrase for what it is.
+        /// A phrase that says what it is.
         what: &'static str,
         /// The names that can be reset.
         known: Vec<String>,
@@ -114,7 +114,8 @@ pub enum MeaningError {
         /// Its name.
         name: String,
     },
-    /// A quasi-velocity, requested in addition to the text, that is not a linear form in the velocities.
+    /// A quasi-velocity that was requested in addition to the text but is not a linear form in the
+    /// velocities.
     #[error("`{text}` is not linear in the velocities")]
     NotLinear {
         /// The definition as written.
@@ -128,7 +129,7 @@ pub enum MeaningError {
         /// The forms that exist for it.
         help: &'static str,
     },
-    /// A coordinate without kinematics, although other coordinates have them.
+    /// A coordinate without kinematics, although other coordinates have kinematics.
     #[error("[kinematics] does not say what `{coordinate}'` is")]
     KinematicsMissing {
         /// The coordinate.

@@ -77,7 +77,7 @@ pub struct Heading {
     pub reference: Option<Located<String>>,
 }
 
-/// A value that the system is given by a program or a table.
+/// A value that a program or a table supplies to the system.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
     /// Its name.
@@ -155,7 +155,7 @@ pub struct Algebra {
 pub enum AlgebraDefinition {
     /// By its name in the catalogue.
     Catalogue(Located<String>),
-    /// By its brackets; pairs left out are zero.
+    /// By its brackets; pairs that are left out have the bracket 0.
     Brackets(Vec<Bracket>),
 }
 

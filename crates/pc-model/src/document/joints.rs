@@ -40,7 +40,7 @@ impl TreeBody {
 /// A joint: how a body moves relative to the one to which it is attached.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
-    /// Its place in the file.
+    /// The joint's place in the file.
     pub place: Place,
     /// Its kind.
     pub kind: JointKind,
@@ -48,11 +48,11 @@ pub struct Joint {
     pub axes: Vec<[f64; 3]>,
     /// The advance of a screw joint per radian.
     pub pitch: Option<Expression>,
-    /// Its position in the axes of the body to which its body is attached, relative to that body's origin;
-    /// the origin if left out.
+    /// The position of the joint relative to the origin of the body that carries it, in the axes of that
+    /// body; the origin if left out.
     pub at: Option<[Expression; 3]>,
-    /// The rotation from the joint's axes to those of the body to which its body is attached; none if they
-    /// are parallel.
+    /// The rotation from the joint's axes to those of the body that carries it; `None` if the axes are
+    /// parallel.
     pub rotation: Option<JointRotation>,
     /// The names of its coordinates.
     pub coordinates: Vec<Name>,
@@ -148,7 +148,8 @@ impl JointKind {
         ends.iter().map(|end| format!("{name}{end}")).collect()
     }
 
-    /// The index of the first component of its quaternion among its coordinates, if it has one.
+    /// The index, among the joint's coordinates, of the first component of its quaternion, if it has a
+    /// quaternion.
     pub fn quaternion(self) -> Option<usize> {
         match self {
             JointKind::Spherical => Some(0),

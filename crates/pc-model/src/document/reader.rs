@@ -266,7 +266,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// The value as one of a few words.
+    /// The value, which must be one of the words in `choices`.
     pub(super) fn choice<T: Copy>(&self, choices: &[(&'static str, T)]) -> Result<Located<T>, ModelError> {
         let text = self.text()?.value;
         if let Some((_, value)) = choices.iter().find(|(word, _)| *word == text) {
