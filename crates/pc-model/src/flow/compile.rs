@@ -128,7 +128,7 @@ impl Model {
     }
 
     /// The compiled motion, if it can be evaluated at the start, with projection onto the integrals to be
-    /// kept. These have to be integrals whatever the external forces.
+    /// kept. The kept functions have to be integrals whatever the external forces are.
     fn started(
         &self,
         compiled: Result<Motion, MechError>,

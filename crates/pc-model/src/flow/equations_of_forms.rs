@@ -21,8 +21,8 @@ impl<'g> Assembly<'g> {
         })
     }
 
-    /// The equations M η̇ = r in the quasi-velocities of the state, or those of its momenta, without the reactions
-    /// of multipliers.
+    /// The equations M η̇ = r, without the reactions of multipliers, in the quasi-velocities of the state or those
+    /// to which its momenta belong.
     ///
     /// # Errors
     /// [`ModelError`] at the constraint under which there are no independent velocities.

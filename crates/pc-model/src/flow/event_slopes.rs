@@ -34,7 +34,7 @@ pub(super) struct Slopes<'a> {
     compiled: &'a Compiled,
 }
 
-/// The derivatives of one function with respect to (t, y, p).
+/// The derivatives of a single function with respect to (t, y, p).
 #[derive(Clone, Copy)]
 pub(super) struct Row<'a> {
     dim: usize,

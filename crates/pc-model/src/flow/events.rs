@@ -220,7 +220,7 @@ impl Events for FlowEvents {
         }
     }
 
-    /// False if inputs have tables, since the rates of these are not expressions.
+    /// False if inputs have tables, since the rates of tables are not expressions.
     fn has_derivatives(&self) -> bool {
         self.slopes.is_some() && self.tables.is_empty()
     }

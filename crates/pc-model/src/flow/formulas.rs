@@ -13,10 +13,11 @@ use crate::names::stage::Stage;
 
 impl<'g> Assembly<'g> {
     /// The parameters given by expressions in others: the index of each, with its value as a function of the
-    /// parameters that are numbers. `model` is the one assembled here.
+    /// parameters that are numbers. `model` is the model from which this assembly was made.
     ///
     /// # Errors
-    /// [`ModelError`] for an expression without a meaning; a model with one could not have been assembled.
+    /// [`ModelError`] for an expression without a meaning; a model with such an expression could not have
+    /// been assembled.
     pub fn parameter_formulas(&self, model: &Model) -> Result<Vec<(usize, Expr<'g>)>, ModelError> {
         let (graph, document) = (self.system.graph(), model.document());
         let mut scope = Scope::new(graph, document);

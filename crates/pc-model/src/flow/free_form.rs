@@ -25,7 +25,7 @@ pub struct FreeForm<'g> {
     pub values: Vec<Expr<'g>>,
     /// The quasi-velocities of the system as functions of time, coordinates and the independent ones.
     pub definitions: Vec<Expr<'g>>,
-    /// The k × k matrix A in η' = A η; none if the quasi-velocities are those of the model.
+    /// The k × k matrix A in η' = A η; `None` if the quasi-velocities are those of the model.
     pub(crate) matrix: Option<Matrix<Expr<'g>>>,
 }
 
@@ -259,7 +259,7 @@ impl<'g> Assembly<'g> {
     }
 }
 
-/// The columns of the constraint matrix that belong to the dependent quasi-velocities.
+/// The columns of the constraint matrix that belong to dependent quasi-velocities.
 fn dependent_columns<'g>(
     c: &Matrix<Expr<'g>>,
     all: &[Expr<'g>],
@@ -300,8 +300,8 @@ fn in_alike_units(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     rows.iter().map(in_units).collect()
 }
 
-/// The part of a row that is orthogonal to the known rows, which all have length one, and its size relative
-/// to the row.
+/// The part of a row that is orthogonal to the known rows, which all have length one, and the length of this
+/// part relative to that of the row.
 fn rest(known: &[Vec<f64>], row: &[f64]) -> (Vec<f64>, f64) {
     let size = |row: &[f64]| row.iter().fold(0.0f64, |size, entry| size.hypot(*entry));
     let mut rest = row.to_vec();

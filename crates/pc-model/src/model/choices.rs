@@ -7,9 +7,9 @@ use crate::model::model::Model;
 impl Model {
     /// Gives a quasi-velocity in addition to those of the text, as a linear form in the velocities x' and
     /// quasi-velocities of the model, for equations in [given quasi-velocities](crate::Variables::Given). If fewer
-    /// are given than there are independent ones, quasi-velocities of the model complete them; each time, the one
-    /// that is least determined at the start by those already chosen is taken. Each given quasi-velocity is also an
-    /// output.
+    /// are given than there are independent ones, quasi-velocities of the model complete them; each is chosen as
+    /// the one that is least determined, at the start, by those already chosen. Each given quasi-velocity is also
+    /// an output.
     ///
     /// ```
     /// use pc_mech::Graph;
