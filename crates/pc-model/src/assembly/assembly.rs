@@ -69,8 +69,8 @@ impl<'g> Assembly<'g> {
         self.document.stage(self.system.graph(), "what was asked for", || Ok(()))
     }
 
-    /// Runs `work` on this system. If the [limits](crate::Model::limit) are reached before or during it, the
-    /// result is an error that names this stage, whatever `work` returns.
+    /// Runs `work` on this system. If the [limits](crate::Model::limit) are reached before or during `work`,
+    /// the result is an error that names this stage, whatever `work` returns.
     ///
     /// # Errors
     /// [`ErrorKind::Spent`](crate::ErrorKind::Spent), and the errors of `work`.

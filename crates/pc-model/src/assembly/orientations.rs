@@ -1,5 +1,5 @@
-//! Checks on bodies whose orientation is a matrix of redundant coordinates: it must be a rotation at the
-//! start, and along every motion from there.
+//! Checks on bodies whose orientation is a matrix in redundant coordinates: the matrix must be a rotation at
+//! the start, and along every motion from there.
 //!
 //! If there are as many coordinates as quasi-velocities, RᵀR has to be a multiple of 1 everywhere, which
 //! `pc_mech` checks. Redundant coordinates, such as nine direction cosines, may give a rotation only on the
@@ -77,8 +77,8 @@ impl<'g> Assembler<'g, '_> {
     }
 }
 
-/// The deviation from a multiple of 1 of a symmetric matrix, given by its diagonal and then its other
-/// entries.
+/// The deviation of a symmetric matrix, given by its diagonal and then its other entries, from a multiple of
+/// 1.
 fn defect(matrix: &[f64]) -> f64 {
     let (diagonal, beside) = matrix.split_at(3);
     let mean = diagonal.iter().sum::<f64>() / 3.0;

@@ -89,7 +89,7 @@ impl Parameters {
         &self.values
     }
 
-    /// The tables of inputs, with their indices.
+    /// The tables of inputs, each with the index of its input among the values.
     pub fn tables(&self) -> Vec<(usize, &Arc<Table>)> {
         let all = self.formulas.iter().enumerate();
         all.filter_map(|(place, formula)| match formula {
@@ -103,7 +103,7 @@ impl Parameters {
     /// are expressions in it are updated.
     ///
     /// # Panics
-    /// If there is no such parameter.
+    /// Panics if there is no such parameter.
     pub fn set(&mut self, place: usize, value: f64) {
         self.values[place] = value;
         self.formulas[place] = Formula::Number;
@@ -113,7 +113,7 @@ impl Parameters {
     /// Makes parameter number `place` follow a table from `t_start` on, instead of its present value.
     ///
     /// # Panics
-    /// If there is no such parameter.
+    /// Panics if there is no such parameter.
     pub(crate) fn set_table(&mut self, place: usize, table: Table, t_start: f64) {
         self.values[place] = table.at(t_start).unwrap_or(f64::NAN);
         self.formulas[place] = Formula::Table(Arc::new(table));
@@ -123,7 +123,7 @@ impl Parameters {
     /// Sets all values, which replace the expressions. Tables stay in use.
     ///
     /// # Panics
-    /// If the number of values is wrong.
+    /// Panics if the number of values is wrong.
     pub fn set_all(&mut self, values: &[f64]) {
         self.values.copy_from_slice(values);
         for formula in &mut self.formulas {

@@ -259,8 +259,8 @@ impl Equations {
         (missing.abs() > OFF * value.abs().max(length * self.largest(row))).then_some(value - missing)
     }
 
-    /// The largest magnitude of the unknowns in a row, as far as they are known: a value that is small in
-    /// comparison is small in any units.
+    /// The largest magnitude of the unknowns in a row, as far as the equations determine them: a value that
+    /// is small in comparison is small in any units.
     fn largest(&self, row: &[f64]) -> f64 {
         let known = self.solution(row.len()).into_iter().zip(row).filter(|&(_, &entry)| entry != 0.0);
         known.fold(0.0, |largest, (value, _)| largest.max(value.abs()))

@@ -9,7 +9,7 @@ use crate::document::{self, Expression, JointRotation};
 use crate::names::points::hung;
 use crate::names::stage::Stage;
 
-/// The greatest deviation allowed of a matrix of constants from a rotation, and of the length of a quaternion
+/// The greatest allowed deviation of a matrix of constants from a rotation, and of the length of a quaternion
 /// from 1: the rounding error of numbers written with nine digits.
 const OFF: f64 = 1e-8;
 
@@ -48,7 +48,7 @@ impl<'g> Assembler<'g, '_> {
         Ok(Some(tree))
     }
 
-    /// The velocities ẋ of the coordinates of joints, which come first, in terms of η.
+    /// The velocities ẋ of the coordinates of joints, in terms of η; these coordinates come first.
     pub(super) fn joint_velocities(&mut self) -> Result<Vec<Expr<'g>>, ModelError> {
         let document = self.model.document();
         let mut bodies = Vec::with_capacity(document.tree.len());

@@ -19,7 +19,7 @@ const SMALL: f64 = 1e-2;
 /// A coordinate may always be off by this times [`OFF`]: the rounding error of numbers of order one, such as cos(π/2).
 const LEAST: f64 = 1e-7;
 
-/// The indices of the components of the start that are left unmoved when it is moved onto the constraints.
+/// The indices of the components that stay as they are when the start is moved onto the constraints.
 pub(super) struct StartHeld {
     coordinates: Vec<usize>,
     quasi_velocities: Vec<usize>,
@@ -58,7 +58,7 @@ pub(super) struct Trial<'a, 'g> {
 }
 
 impl<'g> Trial<'_, 'g> {
-    /// The nearest state with the held components that satisfies the binding constraints.
+    /// The nearest state that has the same held components and satisfies the binding constraints.
     ///
     /// # Errors
     /// [`ModelError`] if none is found.

@@ -102,7 +102,7 @@ pub enum ErrorKind {
     Missing {
         /// Its key.
         key: &'static str,
-        /// How it could be written.
+        /// How the missing entry could be written.
         example: &'static str,
     },
     /// An entry that has no effect by itself.

@@ -253,7 +253,7 @@ pub enum MeaningError {
         /// The value as written.
         text: String,
     },
-    /// Two brackets of the same pair, in opposite orders, that are not opposite to each other.
+    /// Two brackets of the same pair, in opposite orders, that do not have opposite values.
     #[error("the brackets \"{left},{right}\" and \"{right},{left}\" are not opposite")]
     BracketsNotSkew {
         /// The first name in the later bracket.
@@ -428,7 +428,7 @@ pub enum MeaningError {
     /// The rate d() of an input, an acceleration or a reaction.
     #[error("the rate of the {what} `{name}` is not known")]
     UnknownRate {
-        /// Which of these it is.
+        /// `input`, `acceleration` or `reaction`.
         what: &'static str,
         /// Its name.
         name: String,

@@ -174,7 +174,7 @@ pub struct Bracket {
 /// A constraint: an expression that is required to stay zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Constraint {
-    /// Its label, outside the namespace of the model.
+    /// Its label, which lies outside the namespace of the model.
     pub name: Name,
     /// The expression that stays zero.
     pub expression: Expression,
@@ -212,7 +212,7 @@ pub struct Lagrangian {
 /// A rigid body or mass point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// Its label, outside the namespace of the model.
+    /// Its label, which lies outside the namespace of the model.
     pub name: Name,
     /// The section's header.
     pub place: Place,
@@ -260,7 +260,7 @@ pub struct HamiltonJacobi {
 /// An event, which occurs where an expression passes through zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// Its label, outside the namespace of the model.
+    /// Its label, which lies outside the namespace of the model.
     pub name: Name,
     /// The section's header.
     pub place: Place,

@@ -10,7 +10,7 @@ pub const WORLD: &str = "world";
 /// A body attached to another, or to the world, by a joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TreeBody {
-    /// Its label, outside the namespace of the model.
+    /// Its label, which lies outside the namespace of the model.
     pub name: Name,
     /// The section's header.
     pub place: Place,

@@ -98,7 +98,7 @@ impl FlowEvents {
     /// Gives all parameters new values, in the order of declaration.
     ///
     /// # Panics
-    /// If the number of values is not that of the parameters.
+    /// Panics if the number of values is not that of the parameters.
     pub fn set_parameters(&mut self, parameters: &[f64]) {
         self.reading.set_parameters(parameters);
         if let Some(constraints) = &mut self.constraints {

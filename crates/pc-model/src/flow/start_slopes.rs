@@ -25,7 +25,7 @@ impl Flow {
     /// an expression in others.
     ///
     /// # Panics
-    /// If there is no such parameter.
+    /// Panics if there is no such parameter.
     pub fn start_by_parameter(
         &self,
         model: &Model,
@@ -59,7 +59,7 @@ impl Flow {
         Ok(ends[0].iter().zip(&ends[1]).map(|(ahead, behind)| (ahead - behind) / length).collect())
     }
 
-    /// The start of a model of the same text with other values of its parameters.
+    /// The start of a model with the same text but other values of its parameters.
     fn start_with(&self, model: &Model, assembly: &Assembly<'_>) -> Result<Vec<f64>, ModelError> {
         let start = assembly.start_with(model)?;
         let mut flow = self.clone();
@@ -79,7 +79,7 @@ impl Flow {
     /// derivatives of columns that are not components of the state are central differences, accurate to ten digits.
     ///
     /// # Panics
-    /// If there is no such parameter, or `column` does not have the length of the state.
+    /// Panics if there is no such parameter, or `column` does not have the length of the state.
     pub fn derivative(&self, t: f64, state: &[f64], column: &[f64], j: usize) -> Vec<f64> {
         assert_eq!(column.len(), state.len(), "length of the state");
         let components = self.motion.names();

@@ -85,8 +85,8 @@ impl<'a> Names<'a> {
     }
 }
 
-/// The name with invalid characters replaced, and extended if it is taken, or if a name `NAME_ENDING` formed
-/// from it is.
+/// The name with invalid characters replaced, and extended if it, or a name `NAME_ENDING` formed from it, is
+/// taken.
 fn unused(name: &str, endings: &[&str], taken: &mut HashSet<String>) -> String {
     let mut own: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     if !is_name(&own) {

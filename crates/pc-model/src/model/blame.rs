@@ -13,7 +13,7 @@ use crate::diagnostics::source::Place;
 use crate::document::{AlgebraDefinition, Bracket, Constraint, Document};
 
 impl Document {
-    /// Runs `work` in a graph. If the graph's budget is spent before or during it, the result is an error
+    /// Runs `work` in a graph. If the graph's budget is spent before or during `work`, the result is an error
     /// that says so, whatever `work` returns.
     pub(crate) fn stage<T>(
         &self,

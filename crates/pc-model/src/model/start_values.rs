@@ -15,7 +15,7 @@ pub struct UnknownStart {
     pub known: Vec<String>,
 }
 
-/// A name that is neither a parameter nor has a start value.
+/// A name that is not that of a parameter and has no start value.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "`{name}` is neither a parameter nor a start value of this model; its parameters are {}, its start values {}",
@@ -63,7 +63,7 @@ impl Model {
         self.document().start_names()
     }
 
-    /// These absolute tolerances, completed by those of the text.
+    /// These absolute tolerances, completed by the tolerances of the text.
     ///
     /// # Errors
     /// [`UnknownStart`] for a name that has no start value.

@@ -133,7 +133,7 @@ impl<'g> Voronets<'g> {
     /// 0 for time, and i = 1..l.
     ///
     /// # Panics
-    /// If j or i is greater than l.
+    /// Panics if j or i is greater than l.
     pub fn structure(&self, j: usize, i: usize) -> Vec<Expr<'g>> {
         let column = |i: usize| match i.checked_sub(1) {
             None => self.drift.clone(),
