@@ -13,7 +13,7 @@ const STACK: usize = 8 << 20;
 /// thread has too little stack left.
 ///
 /// With the feature `any-stack`, any thread with 128 KiB of stack may call this function; without it, the
-/// thread needs as much as the main thread usually has.
+/// thread needs as much stack as the main thread usually has.
 pub fn deep<T>(work: impl FnOnce() -> T) -> T {
     #[cfg(feature = "any-stack")]
     return stacker::maybe_grow(LEAST, STACK, work);

@@ -31,15 +31,15 @@ pub struct Assembly<'g> {
     pub declared: usize,
     /// The events, in the order in which simultaneous events are handled.
     pub events: Vec<Event<'g>>,
-    /// The definitions of the text, with ẋ = b η + b_0 substituted, except those that have different meanings
-    /// in different places.
+    /// The definitions of the text, with ẋ = b η + b_0 substituted, except definitions that have different
+    /// meanings in different places.
     pub definitions: Vec<(String, Expr<'g>)>,
     /// The quasi-velocities given in addition to those of the text, as linear forms in those of the system.
     pub given: Vec<(Expr<'g>, Expr<'g>)>,
     /// The solution of Hamilton–Jacobi's equation in the text, if there is one.
     pub action: Option<Action<'g>>,
     /// The bodies whose masses change with time or first-order states: they obey D_t (m v) = F, so that the
-    /// mass they lose or take up is at rest.
+    /// mass that they lose or take up is at rest.
     pub changing_masses: Vec<String>,
     /// The text of the model, in which errors are located.
     pub(crate) document: Arc<Document>,
@@ -149,7 +149,7 @@ impl<'g> Assembly<'g> {
         self.start_of(self.system.quasi_velocities())
     }
 
-    /// The start state of a motion whose state has these components: coordinates and some of the
+    /// The start state of a motion whose state consists of these components: coordinates and some of the
     /// quasi-velocities.
     pub fn start_of(&self, components: &[Expr<'g>]) -> Vec<f64> {
         let at = self.at_start();

@@ -230,7 +230,7 @@ impl<'g> ConstraintTreatment<'g> {
     }
 
     /// The system in a frame in which the constraints make quasi-velocities vanish: the frame of the model if it is
-    /// such a frame, otherwise the one that is best at the values `at` of time and state. `None` if there are no
+    /// such a frame, otherwise the frame that is best at the values `at` of time and state. `None` if there are no
     /// constraints, if all of them are integrable and enforced by multipliers, or if one is not affine in the
     /// velocities.
     ///
@@ -281,16 +281,17 @@ impl<'g> ConstraintTreatment<'g> {
         Ok(multipliers.reactions().iter().copied().zip(places.map(|a| values[a])).collect())
     }
 
-    /// The equations with multipliers, if a constraint is not affine in the velocities: then there are no
+    /// The equations with multipliers, if a constraint is not affine in the velocities, so that there are no
     /// independent velocities.
     pub fn nonlinear(&self) -> Option<&Multipliers<'g>> {
         self.multipliers.as_ref().filter(|multipliers| multipliers.is_nonlinear())
     }
 
     /// The equations of motion in independent quasi-velocities: (9), (14) or (30). Under constraints enforced by
-    /// multipliers, they use the requested independent quasi-velocities or, among the choices regular at `at`,
-    /// those whose equations are shortest, and the reactions are substituted in observables. If a constraint is not
-    /// affine in the velocities, they are the equations in all velocities, with the reactions substituted.
+    /// multipliers, the equations use the requested independent quasi-velocities or, among the choices regular at
+    /// `at`, those whose equations are shortest, and the reactions are substituted in observables. If a constraint
+    /// is not affine in the velocities, the result is the equations in all velocities, with the reactions
+    /// substituted.
     ///
     /// # Errors
     /// [`NonholoError`] if they cannot be derived.

@@ -14,7 +14,7 @@ use crate::document;
 use crate::document::DeclaredKind;
 use crate::names::stage::Stage;
 
-/// A constraint of the text with its expression, in which x' are symbols.
+/// A constraint of the text with its expression, in which the velocities x' are symbols.
 pub(super) struct Written<'g> {
     place: usize,
     value: Expr<'g>,
@@ -241,7 +241,7 @@ impl<'g> Assembler<'g, '_> {
         }
     }
 
-    /// Checks that constraints declared nonlinear are nonlinear: affine ones allow more forms of the
+    /// Checks that constraints declared nonlinear are nonlinear: affine constraints allow more forms of the
     /// equations and Frobenius' test.
     fn check_nonlinear(&self, system: &System<'g>, constraints: &[Constraint<'g>]) -> Result<(), ModelError> {
         for constraint in constraints.iter().filter(|constraint| constraint.is_nonlinear()) {

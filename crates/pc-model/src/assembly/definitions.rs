@@ -11,11 +11,11 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::document::Expression;
 use crate::names::stage::Stage;
 
-/// A coefficient smaller than this fraction of the largest in its row is not used as a pivot.
+/// A coefficient smaller than this fraction of the largest coefficient in its row is not used as a pivot.
 const SMALL: f64 = 1e-3;
 
 /// The quasi-velocities that complete the definitions to a frame: their symbols, their definitions in terms
-/// of x', and the constraints that they come from.
+/// of x', and the constraints from which they come.
 #[derive(Default)]
 struct Completion<'g> {
     symbols: Vec<Expr<'g>>,

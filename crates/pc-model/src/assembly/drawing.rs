@@ -177,8 +177,8 @@ fn rotation<'g>(
     Ok(Matrix::from_fn(3, 3, |i, j| values[3 * i + j]))
 }
 
-/// For each body, its mass centre and a rod from its joint to each joint on it, or to the mass centre if
-/// there are none.
+/// For each body, its mass centre and a rod from its joint to each joint that it carries, or to the mass
+/// centre if it carries none.
 fn on_joints<'g>(assembly: &Assembly<'g>) -> Vec<Shape<'g>> {
     let Some(tree) = assembly.system.tree() else { return Vec::new() };
     let (motions, graph) = (tree.motions(), assembly.system.graph());

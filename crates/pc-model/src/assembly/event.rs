@@ -2,7 +2,7 @@
 
 use pc_expr::{Direction, Expr};
 
-/// An event of a model, in expressions of time, coordinates, all quasi-velocities of the system and parameters.
+/// An event of a model, in terms of time, coordinates, all quasi-velocities of the system and parameters.
 #[derive(Clone, Debug)]
 pub struct Event<'g> {
     /// Its name.

@@ -24,8 +24,8 @@ impl<'g> Assembly<'g> {
     /// Checks that some inertia resists the motion of each joint by itself: ∂²L/∂η_s² vanishes, for example,
     /// if a body that turns about an axis is a point mass on that axis.
     ///
-    /// Constraints may take the place of inertia, and so may a kinetic energy in `[lagrangian]`; models that have
-    /// either are not checked here.
+    /// Constraints may take the place of inertia, and so may a kinetic energy in `[lagrangian]`; models with
+    /// either of these are not checked here.
     pub(crate) fn check_inertia(&self) -> Result<(), ModelError> {
         let document = &self.document;
         let is_given =

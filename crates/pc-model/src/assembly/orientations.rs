@@ -3,8 +3,8 @@
 //!
 //! If there are as many coordinates as quasi-velocities, RᵀR has to be a multiple of 1 everywhere, which
 //! `pc_mech` checks. Redundant coordinates, such as nine direction cosines, may give a rotation only on the
-//! surface that contains the motion, which is known from the start and from the operators X_s along the
-//! surface.
+//! surface that contains the motion, a surface that is known from the start and from the operators X_s along
+//! it.
 
 use pc_algebra::Frame;
 use pc_mech::Expr;
@@ -51,8 +51,9 @@ impl<'g> Assembler<'g, '_> {
         Ok(())
     }
 
-    /// The largest defect of the derivatives of RᵀR along the operators of the frame, X_0 included, that
-    /// exceeds rounding error for an RᵀR of this size. Missing values are reported elsewhere.
+    /// The largest deviation of the derivatives of RᵀR along the operators of the frame, X_0 included, from
+    /// multiples of 1, if it exceeds rounding error for an RᵀR of this size. Missing values are reported
+    /// elsewhere.
     fn defect_along(
         &self,
         frame: &Frame<'g>,

@@ -1,4 +1,4 @@
-//! The values of parameters and inputs: numbers, expressions in the preceding ones, and tables.
+//! The values of parameters and inputs: numbers, expressions in preceding values, and tables.
 
 use std::sync::Arc;
 
@@ -34,8 +34,8 @@ enum Formula {
     Wrong(ModelError),
 }
 
-/// The names of parameters and inputs, in their order, each with its expression; an input with a table has
-/// none.
+/// The names of parameters and inputs, in their order, each with its expression; an input with a table has no
+/// expression.
 fn written(document: &Document) -> impl Iterator<Item = (&Name, Option<&Expression>)> {
     let parameters =
         document.parameters.iter().map(|parameter| (&parameter.name, Some(&parameter.expression)));
@@ -144,8 +144,8 @@ impl Parameters {
     }
 
     /// # Errors
-    /// [`ModelError`] at the first entry that has no finite value; `document` is the one these values belong
-    /// to.
+    /// [`ModelError`] at the first entry that has no finite value; `document` is the document to which these
+    /// values belong.
     pub(crate) fn check(&self, document: &Document) -> Result<(), ModelError> {
         for ((formula, value), (name, expression)) in
             self.formulas.iter().zip(&self.values).zip(written(document))

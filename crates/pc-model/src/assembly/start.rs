@@ -16,14 +16,14 @@ use crate::names::stage::Stage;
 /// remainder is rounding error.
 const DEPENDENT: f64 = 1e-9;
 
-/// Velocities are considered equal if they differ by less than this fraction of those from which they are
-/// determined.
+/// Velocities are considered equal if they differ by less than this fraction of the velocities from which
+/// they are determined.
 const OFF: f64 = 1e-8;
 
 /// The parts of the start that are given.
 pub(super) struct Given {
-    /// The values of coordinates, then of the declared quasi-velocities, or of velocities if none is
-    /// declared; zero if not given.
+    /// The values of coordinates, then of the declared quasi-velocities, or of velocities if no
+    /// quasi-velocity is declared; values that are not given are zero.
     pub(super) values: Vec<f64>,
     /// Whether each of these values is given.
     is_given: Vec<bool>,
@@ -34,8 +34,8 @@ pub(super) struct Given {
     pub(super) states: Vec<f64>,
 }
 
-/// The given start values alone: those of the coordinates, of the declared quasi-velocities or else the
-/// velocities, and of the first-order states.
+/// The given start values alone: those of the coordinates, of the declared quasi-velocities or, if there are
+/// none, of the velocities, and of the first-order states.
 ///
 /// # Errors
 /// [`ModelError`] if a value is not a number.

@@ -89,8 +89,8 @@ impl<'g> Assembler<'g, '_> {
         Err(self.model.document().error(&place, MeaningError::NotARotation { defect, determinant }))
     }
 
-    /// Scales quaternions to length 1 at the start, if their length differs from 1 only by the rounding of the
-    /// written numbers; `start` begins with the values of the coordinates.
+    /// Scales quaternions to length 1 at the start, if their length differs from 1 only because the written
+    /// numbers are rounded; `start` begins with the values of the coordinates.
     pub(super) fn normalise_quaternions(&self, start: &mut [f64]) -> Result<(), ModelError> {
         let document = self.model.document();
         let mut first = 0;

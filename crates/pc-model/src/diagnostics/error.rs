@@ -50,7 +50,7 @@ fn clipped(text: &str) -> String {
     }
 }
 
-/// An error in a model file. It is shown with its place in the file, the line, and a correction.
+/// An error in a model file. The error is shown with its place in the file, the line, and a correction.
 #[derive(Clone, Debug, Error)]
 #[error("{}", .0.rendered)]
 pub struct ModelError(Box<Details>);

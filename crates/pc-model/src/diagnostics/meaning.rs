@@ -293,7 +293,7 @@ pub enum MeaningError {
         acts_as_zero(combination, |s| names[s - 1].clone())
     )]
     Undetermined {
-        /// The combination: the numbers of the quasi-velocities, counted from 1, with their coefficients.
+        /// The combination: the number of each quasi-velocity in it, counted from 1, with its coefficient.
         combination: Vec<(usize, String)>,
         /// The names of all quasi-velocities.
         names: Vec<String>,

@@ -69,7 +69,7 @@ impl Source {
         self.text.get(span).unwrap_or_default()
     }
 
-    /// Line and column of a byte offset; an offset past the end counts as the end.
+    /// The line and column of a byte offset; an offset past the end counts as the end.
     pub fn position(&self, offset: usize) -> Position {
         let offset = self.text.floor_char_boundary(offset);
         let before = &self.text[..offset];

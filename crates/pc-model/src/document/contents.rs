@@ -18,7 +18,8 @@ pub struct Document {
     pub source: Source,
     /// `[model]`
     pub model: Heading,
-    /// `[parameters]`, which stay adjustable, each with its number or an expression in the preceding ones.
+    /// `[parameters]`, which stay adjustable, each with its number or an expression in the preceding
+    /// parameters.
     pub parameters: Vec<NamedExpression>,
     /// `[inputs]`
     pub inputs: Vec<Input>,
@@ -89,7 +90,7 @@ pub struct Input {
 /// The value of an input.
 #[derive(Clone, Debug, PartialEq)]
 pub enum InputValue {
-    /// A number, or an expression in parameters: constant until it is set.
+    /// A number, or an expression in parameters: the input is constant until it is set.
     Constant(Expression),
     /// A list of times and the values at these times.
     Lists {
@@ -113,7 +114,7 @@ pub struct TableFile {
     pub file: Located<String>,
     /// The column of the values.
     pub column: Located<String>,
-    /// The column of the times; if left out, the column `t` or else the first one.
+    /// The column of the times; if left out, the column `t`, or else the first column.
     pub time: Option<Located<String>>,
     /// The interpolation between the times.
     pub interpolation: Interpolation,

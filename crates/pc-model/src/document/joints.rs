@@ -138,7 +138,7 @@ impl JointKind {
         ends.iter().map(|end| format!("{name}{end}")).collect()
     }
 
-    /// The names of the quasi-velocities of a joint called `name` whose coordinates have these names.
+    /// The names of the quasi-velocities of a joint called `name` whose coordinates are called `coordinates`.
     pub(crate) fn quasi_velocities(self, name: &str, coordinates: &[String]) -> Vec<String> {
         let ends: &[&str] = match self {
             JointKind::Spherical => &["_ω1", "_ω2", "_ω3"],
@@ -169,7 +169,7 @@ impl JointKind {
 pub enum JointRotation {
     /// The rows of the matrix.
     Matrix(Box<[Expression; 9]>),
-    /// Successive rotations about axes 0 to 2, each about an axis as rotated by the preceding ones.
+    /// Successive rotations about axes 0 to 2, each about an axis as turned by the preceding rotations.
     Turns(Vec<(usize, Expression)>),
 }
 
