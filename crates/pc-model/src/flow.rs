@@ -4,7 +4,7 @@
 //! then `free_form`, the equations in independent quasi-velocities, whose start is given by `formulas`; then `compile`, which compiles
 //! their motion and evaluates it at the start. `reading` converts states to coordinates, quasi-velocities and first-order states; `events`
 //! evaluates the model's events on these, and `constrained_resets` finds the states that constraints allow after resets. `flow` combines
-//! all of this; `tolerances` depend on the scales of a flow; `prototype` gives a flow other numbers without deriving it again.
+//! all of this; `tolerances` depend on the scales of a flow; `prototype` gives a flow other values without deriving its equations again.
 
 pub(crate) mod compile;
 pub(crate) mod constrained_resets;

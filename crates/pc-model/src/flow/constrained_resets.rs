@@ -47,13 +47,13 @@ impl ConstrainedResets {
     /// Moves a state (x, η, z) onto the constraints after a reset has set the components `places`; `before` is the
     /// state before the reset.
     ///
-    /// Velocities that are set stay as they are, and the others are adjusted. If more velocities are set than the
-    /// constraints leave free, all velocities move to the nearest allowed values. Coordinates stay: the state is
-    /// at the event, and rounding errors must not move it back.
+    /// Velocities that were set stay as they are, and the others are adjusted. If more velocities are set than
+    /// the constraints leave free, all velocities move to the nearest allowed values. Coordinates keep their
+    /// values: the state is at the event, and rounding errors must not move it back.
     ///
     /// # Errors
-    /// A [`Failure`] if a coordinate, or a velocity that should stay, would have to move; or if no state on the
-    /// constraints is found.
+    /// A [`Failure`] if a coordinate, or a velocity that should stay, would have to change, or if no state on
+    /// the constraints is found.
     pub(super) fn settle(
         &mut self,
         t: f64,

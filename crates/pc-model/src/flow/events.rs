@@ -1,4 +1,4 @@
-//! The events of a model, evaluated on the states that are integrated, whatever the form of the equations.
+//! The events of a model, evaluated on the states that are integrated, for any form of the equations.
 
 use std::sync::Arc;
 
@@ -106,8 +106,8 @@ impl FlowEvents {
         }
     }
 
-    /// Computes ∂g/∂pⱼ and, in `reset`, ∂R/∂pⱼ by central difference quotients, accurate to ten digits: for
-    /// momenta, and for velocities that constraints determine.
+    /// Computes ∂g/∂pⱼ and, in `reset`, ∂R/∂pⱼ by central difference quotients, accurate to ten digits. This
+    /// is used for momenta, and for velocities that constraints determine.
     fn quotient_by_parameter(
         &mut self,
         event: usize,

@@ -19,7 +19,7 @@ pub struct Flow {
     pub motion: Motion,
     /// Its state at the start.
     pub start: Vec<f64>,
-    /// The names of the coordinates of the form, of the declared quasi-velocities whatever the form, and of the
+    /// The names of the coordinates of the form, of the declared quasi-velocities (for any form), and of the
     /// first-order states.
     pub names: Vec<String>,
     /// The events; none in most models.

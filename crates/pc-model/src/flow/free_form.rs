@@ -8,8 +8,8 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::variables::Variables;
 
-/// A definition of a quasi-velocity counts as dependent on the preceding ones if no more than this fraction
-/// of it is independent of them.
+/// A definition of a quasi-velocity counts as dependent on the preceding definitions if no more than this
+/// fraction of it is independent of them.
 const DEPENDENT: f64 = 1e-6;
 
 /// A system whose equations (9) are the equations of motion, with the relation between its quasi-velocities and those
@@ -60,7 +60,7 @@ impl<'g> FreeForm<'g> {
 
 impl<'g> Assembly<'g> {
     /// The system in independent quasi-velocities, with the coordinates and quasi-velocities of these variables;
-    /// for momenta, the quasi-velocities are those to which they belong.
+    /// for momenta, the quasi-velocities are those to which the momenta belong.
     ///
     /// # Errors
     /// [`ModelError`] if there is no such form.
@@ -126,7 +126,8 @@ impl<'g> Assembly<'g> {
         Err(self.no_form(message.to_owned(), "use another form: poincare, canonical, or hamel"))
     }
 
-    /// The form in the quasi-velocities given in addition to the text, completed by those of the model.
+    /// The form in the quasi-velocities given in addition to the text, completed by quasi-velocities of the
+    /// model.
     fn in_given(&self, free: &System<'g>) -> Result<FreeForm<'g>, ModelError> {
         let (graph, eta) = (free.graph(), free.quasi_velocities());
         let help = "give them after the model, as in `pc derive MODEL --form hamel \"v = r*φ'\"`, each independent of those before";
@@ -196,7 +197,7 @@ impl<'g> Assembly<'g> {
         Ok([self.start_of(form.system.frame().coordinates()), eta, self.start_of(&states)].concat())
     }
 
-    /// Whether the constraints have multipliers, because they do more than make quasi-velocities vanish.
+    /// Whether the constraints have multipliers because they do more than make quasi-velocities vanish.
     pub fn has_multipliers(&self) -> bool {
         matches!(self.constraints.formulation(), ConstraintFormulation::Multipliers(_))
     }

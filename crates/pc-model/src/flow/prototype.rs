@@ -11,9 +11,9 @@ use crate::model::model::Model;
 use crate::variables::Variables;
 
 /// If projection moves each component of a start by at most this fraction, the start satisfies the constraints up to the
-/// rounding of its digits. The fraction is a tenth of that at which a model is refused.
+/// rounding of its digits. The fraction is a tenth of the deviation at which a model is refused.
 const ON_CONSTRAINTS: f64 = 1e-9;
-/// A component may also move by this fraction of the largest one: the rounding error of the projection.
+/// A component may also move by this fraction of the largest component: the rounding error of the projection.
 const ROUNDING: f64 = 1e-14;
 
 /// The equations of a model, compiled once for all models that differ from it only in numbers.
@@ -37,7 +37,7 @@ impl Prototype {
 
     /// The prototype of a flow of the model in these variables. `None` if the equations may depend on the start or
     /// on the values of the parameters (because momenta are solved for velocities near the start, or redundant
-    /// constraints are left out), or if the start has to be solved for.
+    /// constraints are left out), or if the start must be solved for.
     pub fn of(model: &Model, assembly: &Assembly<'_>, variables: Variables, flow: Flow) -> Option<Prototype> {
         let own =
             variables == Variables::QuasiVelocities && !model.projects_start() && !model.derives_start();

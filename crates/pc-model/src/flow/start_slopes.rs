@@ -6,8 +6,8 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::flow::flow::Flow;
 use crate::model::model::Model;
 
-/// The step for a central difference with respect to a parameter of this value. It makes truncation and
-/// rounding errors equal, so that the difference is accurate to ten digits.
+/// The step for a central difference with respect to a parameter of this value. This step makes truncation
+/// and rounding errors equal, so that the difference is accurate to ten digits.
 fn step(value: f64) -> f64 {
     let size = if value == 0.0 { 1.0 } else { value.abs() };
     f64::EPSILON.cbrt() * size
@@ -15,14 +15,14 @@ fn step(value: f64) -> f64 {
 
 impl Flow {
     /// The derivative ∂y₀/∂pⱼ of the start of this flow of a model with respect to number j of the
-    /// [parameters](Model::parameters): the start of a column of sensitivities. It is a central difference of starts, since
-    /// these may be expressions in parameters or may be moved onto constraints that contain parameters. No equation is
-    /// derived for this.
+    /// [parameters](Model::parameters): the start of a column of sensitivities. The derivative is a central difference of
+    /// starts, since start values may be expressions in parameters or may be moved onto constraints that contain
+    /// parameters. No equation is derived for this.
     ///
     /// # Errors
     /// [`ModelError`] if the model has no start for nearby values of the parameter, for example because the start
     /// is not moved onto constraints that depend on it; for an input with a table; and for a parameter given by
-    /// an expression in others.
+    /// an expression in other parameters.
     ///
     /// # Panics
     /// Panics if there is no such parameter.

@@ -313,7 +313,8 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// An angle, written as a multiple of a quarter turn if it is one to the precision of numbers in a file.
+/// An angle, written as a multiple of a quarter turn if it equals such a multiple to the precision of numbers
+/// in a file.
 fn angle(angle: f64) -> String {
     let quarters = (angle / std::f64::consts::FRAC_PI_2).round();
     if quarters != 0.0 && (angle - quarters * std::f64::consts::FRAC_PI_2).abs() <= 1e-10 {

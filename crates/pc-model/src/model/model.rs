@@ -132,7 +132,7 @@ impl Model {
     }
 
     /// Sets a parameter, or an input that has no table, to a value other than that in the file. Parameters that are
-    /// expressions in it are updated; one that is itself an expression becomes a number.
+    /// expressions in it are updated; a parameter that is itself an expression becomes a number.
     ///
     /// # Errors
     /// [`UnknownParameter`], which lists the existing parameters.

@@ -171,8 +171,8 @@ impl<'g> Found<'_, 'g> {
         places.into_iter().map(|a| self.constraints[a].name().to_owned()).collect()
     }
 
-    /// Finds the constraints that depend on others where all conditions on positions hold, if the start shows
-    /// that there are any.
+    /// Finds the constraints that depend on others where all conditions on positions hold, if there are any
+    /// such constraints at the start.
     fn look_where_they_hold(&mut self, at: &[(Expr<'g>, f64)]) -> Result<(), NonholoError> {
         let Some(start) = self.start(at).filter(|_| self.rows.places.len() + self.open.len() > 1) else {
             return Ok(());

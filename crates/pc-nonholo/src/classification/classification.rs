@@ -11,13 +11,13 @@ use crate::error::NonholoError;
 pub enum ConstraintKind {
     /// It restricts positions: f(t, x) = 0.
     Position,
-    /// It restricts velocities, but together with the others it can be written f(t, x) = const: it is
-    /// holonomic in disguise.
+    /// It restricts velocities, but together with the other constraints it can be written f(t, x) = const: it
+    /// is holonomic in disguise.
     Integrable,
     /// It restricts velocities but leaves all positions within reach.
     Nonholonomic {
         /// The largest component, along the constraint, of the commutators of the allowed velocities, at the
-        /// state where it was tested.
+        /// state where the constraint was tested.
         residual: f64,
     },
     /// It restricts velocities and is not affine in them. Frobenius' test does not apply to it.
@@ -42,9 +42,9 @@ impl<'g> ConstraintClassification<'g> {
     ///   [X'_r, X'_s] = c'_rs^m X'_m + c'_rs^α X'_α,   r, s = 0..l,
     ///
     /// the constraint α is integrable if these brackets have no component along it, c'_rs^α = 0, and brackets of
-    /// brackets have none either: then it vanishes on the smallest involutive family of fields that contains
-    /// X'_0..X'_l. Conditions on positions come first: a condition on velocities may follow from them, but never the
-    /// other way round.
+    /// brackets have none either: then the constraint vanishes on the smallest involutive family of fields that
+    /// contains X'_0..X'_l. Conditions on positions come first: a condition on velocities may follow from them, but
+    /// never the other way round.
     ///
     /// [Nonlinear](Constraint::nonlinear) constraints come last and are ignored both in the rank and in the test of
     /// the other constraints; a constraint that restricts no velocity at almost all states is not tested for

@@ -28,10 +28,10 @@ struct Form<'g> {
 
 impl<'g> IntegrableCombination<'g> {
     /// Finds combinations in closed form among the `count` independent ones that constraints of these `kinds`
-    /// [have](crate::ConstraintClassification::integrable_combinations): their coefficients are constant, or
-    /// functions of time and coordinates, or constant for the given values of the parameters. The combinations found
-    /// are independent of each other, and their integrability is proved. None is found unless there are as many
-    /// quasi-velocities as coordinates.
+    /// [have](crate::ConstraintClassification::integrable_combinations): combinations whose coefficients are
+    /// constant, or functions of time and coordinates, or constant for the given values of the parameters. The
+    /// combinations found are independent of each other, and their integrability is proved. None is found unless
+    /// there are as many quasi-velocities as coordinates.
     ///
     /// `at` are values of time, coordinates, quasi-velocities and parameters where the constraints are regular.
     ///

@@ -103,8 +103,8 @@ pub(crate) fn independent<'g>(
     Ok((0..eta.len()).filter(|s| !dependent.contains(s)).collect())
 }
 
-/// The indices of the quasi-velocities that the constraints set to zero, if that is all that each constraint
-/// does.
+/// The indices of the quasi-velocities that the constraints set to zero, if each constraint does no more than
+/// that.
 fn vanishing<'g>(eta: &[Expr<'g>], velocities: &[Expr<'g>]) -> Option<Vec<usize>> {
     velocities.iter().map(|velocity| eta.iter().position(|eta| eta == velocity)).collect()
 }
