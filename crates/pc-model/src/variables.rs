@@ -22,7 +22,7 @@ pub enum Variables {
 }
 
 impl Variables {
-    /// All of them.
+    /// All choices of variables.
     pub const ALL: [Variables; 6] = [
         Variables::QuasiVelocities,
         Variables::Momenta,

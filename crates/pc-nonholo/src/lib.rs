@@ -3,7 +3,7 @@
 //! Numbers in brackets are those of the equations in V. V. Rumyantsev, *On Poincaré–Chetaev's equations*
 //! (1994), with its misprints corrected; the conventions are those of [`pc_mech`]. Of k quasi-velocities, l
 //! are free and have indices r, s = 1..l; the other k − l are kept at zero and have indices α = l+1..k. The
-//! index m runs over all of them. The library is independent of units: any consistent units can be used.
+//! index m runs over all k. The library is independent of units: any consistent units can be used.
 //!
 //! # Which constraints are nonholonomic
 //!

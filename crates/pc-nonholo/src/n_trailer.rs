@@ -5,7 +5,7 @@ use pc_mech::{Expr, Graph, System, SystemBuilder};
 use crate::error::NonholoError;
 use crate::reduction::constrained::Constrained;
 
-/// A body on one axle, which does not slip sideways.
+/// A body on one axle that does not slip sideways.
 #[derive(Clone, Copy, Debug)]
 pub struct Wagon<'g> {
     /// Mass.

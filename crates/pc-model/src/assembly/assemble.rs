@@ -63,7 +63,7 @@ pub(super) struct Begun<'g> {
     pub(super) t_start: f64,
     pub(super) frame: Frame<'g>,
     pub(super) constraints: Vec<Written<'g>>,
-    /// All quasi-velocities, the declared ones first.
+    /// All quasi-velocities, with the declared ones first.
     pub(super) eta: Vec<Expr<'g>>,
     declared: usize,
     /// The number of quasi-velocities that come first and determine the others.

@@ -15,8 +15,8 @@ use crate::document::Document;
 
 /// The system of a model, with the state from which its motion starts.
 pub struct Assembly<'g> {
-    /// The system, without its constraints. Its quasi-velocities are the declared ones and those defined by
-    /// constraints.
+    /// The system, without its constraints. The quasi-velocities of the system are the declared ones and
+    /// those defined by constraints.
     pub system: System<'g>,
     /// Its constraints.
     pub constraints: ConstraintTreatment<'g>,
@@ -93,7 +93,7 @@ impl<'g> Assembly<'g> {
     /// The equations of motion in independent quasi-velocities.
     ///
     /// # Errors
-    /// [`ModelError`] if they cannot be derived.
+    /// [`ModelError`] if the equations cannot be derived.
     pub fn equations(&self) -> Result<Equations<'g>, ModelError> {
         let equations = || self.placed(self.constraints.equations(&self.system, &self.at_start()));
         self.document.stage(self.system.graph(), "the equations of motion", equations)
@@ -111,7 +111,7 @@ impl<'g> Assembly<'g> {
     /// The system of the independent quasi-velocities whose equations (9) are the equations of motion.
     ///
     /// # Errors
-    /// [`ModelError`] if it cannot be derived.
+    /// [`ModelError`] if the system cannot be derived.
     pub fn free_system(&self) -> Result<System<'g>, ModelError> {
         self.placed(self.constraints.free_system(&self.system, &self.at_start()))
     }

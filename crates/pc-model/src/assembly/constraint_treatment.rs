@@ -218,7 +218,7 @@ impl<'g> ConstraintTreatment<'g> {
         Some(positions.map(Constraint::expression).collect())
     }
 
-    /// The constraints that follow from others and were dropped.
+    /// The constraints that follow from other constraints and were dropped.
     pub fn redundant(&self) -> &[Redundant] {
         &self.redundant
     }
@@ -294,7 +294,7 @@ impl<'g> ConstraintTreatment<'g> {
     /// substituted.
     ///
     /// # Errors
-    /// [`NonholoError`] if they cannot be derived.
+    /// [`NonholoError`] if the equations cannot be derived.
     pub fn equations(
         &self,
         system: &System<'g>,

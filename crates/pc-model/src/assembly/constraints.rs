@@ -20,7 +20,7 @@ pub(super) struct Written<'g> {
     value: Expr<'g>,
     /// Whether it is declared nonlinear.
     nonlinear: bool,
-    /// The quasi-velocity that the constraint defines, if it completes the declared ones.
+    /// The quasi-velocity that the constraint defines, if this quasi-velocity completes the declared ones.
     defines: Option<Expr<'g>>,
 }
 
@@ -30,7 +30,7 @@ impl<'g> Written<'g> {
         self.defines = Some(quasi_velocity);
     }
 
-    /// Whether it is declared nonlinear in the velocities.
+    /// Whether the constraint is declared nonlinear in the velocities.
     pub(super) fn is_nonlinear(&self) -> bool {
         self.nonlinear
     }

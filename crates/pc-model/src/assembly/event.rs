@@ -9,7 +9,7 @@ pub struct Event<'g> {
     pub name: String,
     /// The expression that passes through zero.
     pub when: Expr<'g>,
-    /// The direction in which it passes through zero.
+    /// The direction in which the expression passes through zero.
     pub direction: Direction,
     /// Whether the motion ends there.
     pub terminal: bool,

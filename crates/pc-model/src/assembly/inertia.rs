@@ -13,7 +13,7 @@ const FAST: f64 = 1e6;
 /// The rounding error that is left where the kinetic energy vanishes, as a fraction of its terms.
 const ROUNDING: f64 = 1e-12;
 
-/// How a joint moves: along a direction or about it.
+/// How a joint moves: along an axis or about it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
     Slide,

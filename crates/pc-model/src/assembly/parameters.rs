@@ -100,7 +100,7 @@ impl Parameters {
     }
 
     /// Gives the parameter or input with index `place` a value, which replaces its expression. Values that
-    /// are expressions in it are updated.
+    /// are expressions in the new value are updated.
     ///
     /// # Panics
     /// Panics if there is no such parameter.

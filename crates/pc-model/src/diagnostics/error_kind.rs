@@ -28,7 +28,7 @@ pub enum ErrorKind {
         /// A correction.
         help: &'static str,
     },
-    /// The same key is given twice in one table.
+    /// The same key is given twice in the same table.
     #[error("`{key}` is given twice")]
     DuplicateKey {
         /// The key as written.
@@ -110,7 +110,7 @@ pub enum ErrorKind {
     NoEffect {
         /// Its key.
         key: String,
-        /// The entry that it needs.
+        /// The entry that is needed as well.
         without: &'static str,
         /// How that entry could be written.
         example: &'static str,
@@ -131,7 +131,7 @@ pub enum ErrorKind {
         /// The existing bodies.
         known: Vec<String>,
     },
-    /// Bodies attached to each other in a circle.
+    /// Bodies attached to one another in a circle.
     #[error("no body of these hangs on the world: {}", hanging(bodies))]
     CircularParents {
         /// The bodies, each attached to the next and the last to the first.

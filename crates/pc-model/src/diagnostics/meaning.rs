@@ -43,7 +43,7 @@ pub enum MeaningError {
     NotReset {
         /// The name.
         name: String,
-        /// A phrase that says what it is.
+        /// A phrase that says what the thing is.
         what: &'static str,
         /// The names that can be reset.
         known: Vec<String>,
@@ -91,7 +91,7 @@ pub enum MeaningError {
     NotNonlinear {
         /// Its name.
         constraint: String,
-        /// A phrase that says what it is instead.
+        /// A phrase that says what the constraint is instead.
         what: &'static str,
     },
     /// A reaction force or torque on a body that virtual work does not determine.
@@ -180,7 +180,7 @@ pub enum MeaningError {
         coordinate: String,
         /// The velocity given.
         given: f64,
-        /// Its value as determined by the others.
+        /// The value that the quasi-velocities determine.
         found: f64,
     },
     /// Components of the start that are to stay fixed but would have to move to satisfy a constraint.
@@ -204,7 +204,7 @@ pub enum MeaningError {
     /// A start that does not satisfy a constraint.
     #[error("the start is off the constraint `{constraint}`: {what} {}, not 0", rounded(*residual))]
     OffConstraint {
-        /// `it is` or `its rate is`.
+        /// The words `it is` or `its rate is`.
         what: &'static str,
         /// Its name.
         constraint: String,
@@ -472,7 +472,7 @@ pub enum MeaningError {
     NotAnIntegral {
         /// The integral.
         name: String,
-        /// The time at which it was found to change.
+        /// The time at which the function was found to change.
         t: f64,
         /// Its rate of change.
         rate: f64,

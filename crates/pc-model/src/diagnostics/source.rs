@@ -24,7 +24,7 @@ pub struct Position {
 /// kinetic`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place {
-    /// Section and entry; empty if there is none.
+    /// The section and the entry; empty if there is neither.
     pub entry: String,
     /// Bytes in the file.
     pub span: Range<usize>,

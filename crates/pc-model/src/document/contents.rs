@@ -41,7 +41,7 @@ pub struct Document {
     pub algebra: Option<Algebra>,
     /// `[constraints]`, then the constraints that close `[loops.NAME]`.
     pub constraints: Vec<Constraint>,
-    /// `[lagrangian]`; it is always given if there are no bodies.
+    /// `[lagrangian]`, which is always given if there are no bodies.
     pub lagrangian: Option<Lagrangian>,
     /// `[bodies.NAME]` with a position.
     pub bodies: Vec<Body>,
@@ -202,7 +202,7 @@ pub struct Lagrangian {
     pub place: Place,
     /// Kinetic energy.
     pub kinetic: Option<Expression>,
-    /// Potential energy; 0 if it is left out.
+    /// The potential energy; 0 if left out.
     pub potential: Option<Expression>,
     /// The Lagrangian itself.
     pub lagrangian: Option<Expression>,
@@ -267,7 +267,7 @@ pub struct Event {
     pub place: Place,
     /// The expression that passes through zero.
     pub when: Expression,
-    /// The direction in which it passes through zero.
+    /// The direction in which the expression passes through zero.
     pub direction: Option<Located<Direction>>,
     /// Whether the run ends there.
     pub terminal: Option<Located<bool>>,

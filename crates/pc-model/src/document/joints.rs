@@ -1,4 +1,4 @@
-//! Bodies attached to others by joints, as written.
+//! Bodies attached to other bodies by joints, as written.
 
 use crate::diagnostics::source::Place;
 use crate::document::expression::{Expression, Located, Name};
@@ -82,13 +82,13 @@ pub enum JointKind {
     Revolute,
     /// A translation along an axis.
     Prismatic,
-    /// A rotation about an axis with an advance along it.
+    /// A rotation about an axis with an advance along the same axis.
     Screw,
-    /// A translation along an axis and a rotation about it.
+    /// A translation along an axis and a rotation about the same axis.
     Cylindrical,
     /// Rotations about an axis of one body and an axis of the other.
     Universal,
-    /// Translations perpendicular to a normal and a rotation about it.
+    /// Translations perpendicular to a normal and a rotation about the normal.
     Planar,
     /// All rotations.
     Spherical,

@@ -340,7 +340,7 @@ impl<'a> Item<'a> {
         Ok(Expression { text: raw.into(), ast, entry, map: TextMap::new(raw, start, raw) })
     }
 
-    /// The value as a list of one of the given lengths.
+    /// The value as a list that has one of the given lengths.
     pub(super) fn list(
         &self,
         lengths: &[usize],
@@ -362,7 +362,7 @@ impl<'a> Item<'a> {
         self.elements(array).map(|element| element.expression()).collect()
     }
 
-    /// The value as a list of one of the given lengths, with elements of any type.
+    /// The value as a list that has one of the given lengths and elements of any type.
     pub(super) fn parts(
         &self,
         lengths: &[usize],

@@ -55,7 +55,7 @@ impl FlowEvents {
     /// quasi-velocities if there are multipliers.
     ///
     /// # Errors
-    /// [`ModelError`] if they cannot be compiled.
+    /// [`ModelError`] if the events cannot be compiled.
     pub(super) fn new(
         model: &Model,
         assembly: &Assembly<'_>,

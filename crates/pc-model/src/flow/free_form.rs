@@ -190,7 +190,7 @@ impl<'g> Assembly<'g> {
     /// The start of a form, in its coordinates, quasi-velocities and first-order states.
     ///
     /// # Errors
-    /// [`ModelError`] if a definition has no value there.
+    /// [`ModelError`] if a definition has no value at the start.
     pub fn start_in(&self, form: &FreeForm<'g>) -> Result<Vec<f64>, ModelError> {
         let eta = self.numbers_at_start(&form.system, &form.definitions)?;
         let states: Vec<Expr<'g>> = form.system.states().iter().map(|&(z, _)| z).collect();

@@ -15,7 +15,7 @@ const OF_COORDINATES: [&str; 8] = ["x", "y", "z", "φ", "q0", "q1", "q2", "q3"];
 pub(crate) struct Names<'a> {
     /// The names of the bodies of links.
     bodies: HashMap<&'a str, String>,
-    /// The names of the coordinates of joints that have exactly one.
+    /// The names of the coordinates, for joints that have exactly one coordinate.
     coordinates: HashMap<&'a str, String>,
     /// The names of the damping parameters, for the joints that have such a parameter.
     dampings: HashMap<&'a str, String>,

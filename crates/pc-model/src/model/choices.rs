@@ -51,8 +51,8 @@ impl Model {
     }
 
     /// Chooses these velocities as the independent ones in equations from which multipliers are eliminated:
-    /// quasi-velocities of the model, or velocities x' for forms in terms of velocities. Without names, those
-    /// whose equations are shortest are chosen.
+    /// quasi-velocities of the model, or velocities x' for forms in terms of velocities. Without names, the
+    /// velocities whose equations are shortest are chosen.
     pub fn choose_independent<S: Into<String>>(&mut self, names: impl IntoIterator<Item = S>) {
         self.independent = names.into_iter().map(Into::into).collect();
     }

@@ -32,7 +32,7 @@ pub struct Model {
     pub(crate) external: Vec<String>,
     /// Quasi-velocities given in addition to those of the document.
     pub(crate) given: Vec<GivenQuasiVelocity>,
-    /// The names of the velocities requested as independent ones.
+    /// The names of the velocities that are requested to be independent.
     pub(crate) independent: Vec<String>,
 }
 
@@ -49,7 +49,7 @@ pub struct UnknownParameter {
 /// What replaces the value of an input in the document.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GivenInput {
-    /// A number, constant until it is set.
+    /// A number, which stays constant until it is set.
     Constant(f64),
     /// A function of time.
     Table(Table),

@@ -61,7 +61,7 @@ pub(crate) struct Scope<'g, 'd> {
     pub(super) context: Context<'g>,
     /// Quotients, calls and whole expressions, in the order of their evaluation: each after its parts.
     pub(crate) written: Vec<Written<'g>>,
-    /// The components of points, which are computed once one is used.
+    /// The components of points, which are all computed when one of them is used.
     pub(super) points: Option<HashMap<String, Expr<'g>>>,
     /// The forces and torques of reactions that are used, each with a place in the file.
     pub(crate) resultants: Vec<(Expr<'g>, Place)>,

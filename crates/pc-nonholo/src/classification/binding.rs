@@ -1,4 +1,4 @@
-//! Binding constraints, and redundant ones that follow from them.
+//! Binding constraints, and the redundant constraints that follow from them.
 
 use pc_mech::{Constraint, Expr, Graph, System};
 
@@ -70,7 +70,7 @@ pub struct Binding {
 impl Binding {
     /// Sorts the constraints of a system. Conditions on positions come first: a condition on velocities may
     /// follow from them, but never the other way round. [Nonlinear](Constraint::nonlinear) constraints bind,
-    /// and no other follows from them.
+    /// and no other constraint follows from them.
     ///
     /// `at` are the values of time and coordinates at which the motion starts, and possibly values of other
     /// symbols.
@@ -106,7 +106,7 @@ impl Binding {
         &self.binding
     }
 
-    /// The redundant ones.
+    /// The redundant constraints.
     pub fn redundant(&self) -> &[Redundant] {
         &self.redundant
     }

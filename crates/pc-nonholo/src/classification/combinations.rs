@@ -30,8 +30,8 @@ impl<'g> IntegrableCombination<'g> {
     /// Finds combinations in closed form among the `count` independent ones that constraints of these `kinds`
     /// [have](crate::ConstraintClassification::integrable_combinations): combinations whose coefficients are
     /// constant, or functions of time and coordinates, or constant for the given values of the parameters. The
-    /// combinations found are independent of each other, and their integrability is proved. None is found unless
-    /// there are as many quasi-velocities as coordinates.
+    /// combinations found are independent of each other, and their integrability is proved. No combination is
+    /// found unless there are as many quasi-velocities as coordinates.
     ///
     /// `at` are values of time, coordinates, quasi-velocities and parameters where the constraints are regular.
     ///

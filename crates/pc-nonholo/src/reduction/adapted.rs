@@ -56,7 +56,7 @@ impl<'g> Adapted<'g> {
         Ok(Adapted { system: self.system.in_orthonormal_frame(names)?, free: self.free })
     }
 
-    /// The system of all k quasi-velocities, the free ones first.
+    /// The system of all k quasi-velocities, with the free ones first.
     pub fn system(&self) -> &System<'g> {
         &self.system
     }

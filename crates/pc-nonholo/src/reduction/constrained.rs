@@ -40,7 +40,7 @@ impl<'g> Constrained<'g> {
         Ok(Constrained { system, equations })
     }
 
-    /// The whole system of k quasi-velocities, the l free ones first.
+    /// The whole system of k quasi-velocities, with the l free ones first.
     pub fn system(&self) -> &System<'g> {
         &self.system
     }
