@@ -1,11 +1,12 @@
 //! From a model to a mechanical system.
 //!
 //! A [`Model`](crate::Model) becomes an [`Assembly`](assembly::Assembly). Read `assembly` first, then `assembler`,
-//! which its parts share, and then the parts in the order in which `assemble` uses them: `parameters` and `tables`,
-//! `frame`, `definitions`, `start`, `bodies`, the `tree` of bodies on joints and `external_force`, `brackets`,
-//! `constraints` with `constraint_treatment`, `body_reactions` and the names of a `resultant`, `action`, `event`
-//! and `events`, and the quasi-velocities `given` in addition to those of the text; `trial`, `definite`, `inertia`
-//! and `orientations` check the start. A `function` and a `drawing` are assembled separately, on request.
+//! which the parts of the assembly share, and then the parts in the order in which `assemble` uses them:
+//! `parameters` and `tables`, `frame`, `definitions`, `start`, `bodies`, the `tree` of bodies on joints and
+//! `external_force`, `brackets`, `constraints` with `constraint_treatment`, `body_reactions` and the names of a
+//! `resultant`, `action`, `event` and `events`, and the quasi-velocities `given` in addition to those of the text;
+//! `trial`, `definite`, `inertia` and `orientations` check the start. A `function` and a `drawing` are assembled
+//! separately, on request.
 
 pub(crate) mod action;
 pub(crate) mod assemble;

@@ -12,8 +12,8 @@ const STACK: usize = 8 << 20;
 /// Runs work on models that may recurse deeply, such as reading or deriving, on a separate stack if the
 /// thread has too little stack left.
 ///
-/// With the feature `any-stack`, any thread with 128 KiB of stack may call it; without it, the thread needs
-/// as much as the main thread usually has.
+/// With the feature `any-stack`, any thread with 128 KiB of stack may call this function; without it, the
+/// thread needs as much stack as the main thread usually has.
 pub fn deep<T>(work: impl FnOnce() -> T) -> T {
     #[cfg(feature = "any-stack")]
     return stacker::maybe_grow(LEAST, STACK, work);

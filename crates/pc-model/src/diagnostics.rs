@@ -1,8 +1,8 @@
 //! Errors in models and their messages: file, line, column, and a correction.
 //!
 //! An error and its place in the file become a [`ModelError`](error::ModelError) with its message and its
-//! `category`, which decides the exit code. Read `source` first (the text, places in it, and how a line of it
-//! is shown). Then read `meaning`, the errors in the meaning of a model, with their `words` and the
+//! `category`, which decides the exit code. Read `source` first (the text, places in it, and how a line of
+//! the text is shown). Then read `meaning`, the errors in the meaning of a model, with their `words` and the
 //! `correction` of each; `error_kind`, which adds the errors in its text; and `error`, the one type that all
 //! of them become.
 

@@ -2,11 +2,11 @@
 //! resolved.
 //!
 //! TOML becomes a [`Document`]. Read the result first: `expression`, whose parts `text_map` locates in the file, and
-//! `contents`, section by section; `run_settings` has the defaults of a run. Then see how it is read: `reading` reads bytes, `syntax` parses TOML, `reader` gives
-//! typed access to it, and `hidden` lists characters that labels must not contain. `sections`, `bodies`, `tree` with its
-//! `joints` and their `inertia`, `loops`, `inputs`, `draw` and `simulation`, with its `tolerance`s, read the sections;
-//! `hanging` declares the coordinates of joints, `checks` tests conditions between the sections, and `parse` combines
-//! all of these. `schema` describes the format for editors.
+//! `contents`, section by section; `run_settings` contains the defaults of a run. Then see how the text is read: `reading` reads bytes,
+//! `syntax` parses TOML, `reader` gives typed access to its values, and `hidden` lists characters that labels must not contain.
+//! `sections`, `bodies`, `tree` with its `joints` and their `inertia`, `loops`, `inputs`, `draw` and `simulation`, with its
+//! `tolerance`s, read the sections; `hanging` declares the coordinates of joints, `checks` tests conditions between the sections, and
+//! `parse` combines all of these. `schema` describes the format for editors.
 
 pub(crate) mod bodies;
 pub(crate) mod checks;

@@ -3,8 +3,8 @@
 //! An [`Assembly`](crate::Assembly) becomes a [`Flow`](flow::Flow). Read `equations_of_forms` first, the equations in the variables of their state;
 //! then `free_form`, the equations in independent quasi-velocities, whose start is given by `formulas`; then `compile`, which compiles
 //! their motion and evaluates it at the start. `reading` converts states to coordinates, quasi-velocities and first-order states; `events`
-//! are the model's events on these, and `constrained_resets` are the states that constraints allow after them. `flow` combines all of this;
-//! `tolerances` depend on the scales of a flow; `prototype` gives a flow other numbers without deriving it again.
+//! evaluates the model's events on these, and `constrained_resets` finds the states that constraints allow after resets. `flow` combines
+//! all of this; `tolerances` depend on the scales of a flow; `prototype` gives a flow other values without deriving its equations again.
 
 pub(crate) mod compile;
 pub(crate) mod constrained_resets;

@@ -1,7 +1,8 @@
 //! Converts models in other formats to text models.
 //!
-//! A robot in URDF becomes the text of a model. Read `robot` first, the contents of such a file; `urdf` reads it,
-//! with an `error` that shows the place in the file, and `text` writes the model, whose names are chosen by `names`.
+//! A robot in URDF becomes the text of a model. Read `robot` first, the contents of such a file; `urdf` reads the
+//! file, with an `error` that shows the place in the file, and `text` writes the model, whose names are chosen by
+//! `names`.
 
 mod error;
 mod names;

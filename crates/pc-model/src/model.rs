@@ -2,8 +2,8 @@
 //!
 //! A [`Document`](crate::Document) becomes a [`Model`](model::Model), from which equations are derived. Read
 //! `model` first; `blame` finds the entry in the file that causes an error of the derivation, `start_values` changes
-//! the start values, `given` and `choices` are about quasi-velocities requested in addition to those of the
-//! text, `builtin` contains the models that come with the library, and `tags` groups them by keywords.
+//! the start values, `given` and `choices` handle quasi-velocities requested in addition to those of the text,
+//! `builtin` contains the models that come with the library, and `tags` groups them by keywords.
 
 pub(crate) mod blame;
 pub(crate) mod builtin;

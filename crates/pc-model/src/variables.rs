@@ -6,22 +6,23 @@ pub enum Variables {
     /// The quasi-velocities of (9) or (30): the independent ones if constraints make the others vanish, otherwise
     /// all of them, with multipliers.
     QuasiVelocities,
-    /// The momenta of (10) that belong to the same quasi-velocities.
+    /// The momenta of (10) that belong to the quasi-velocities of (9) or (30).
     Momenta,
     /// The quasi-velocities of (9), without the coordinates on which nothing depends: the Euler–Poincaré
     /// equations if no coordinate is left.
     Reduced,
-    /// The momenta that belong to these quasi-velocities: the Lie–Poisson equations if no coordinate is left.
+    /// The momenta that belong to the quasi-velocities of `Reduced`: the Lie–Poisson equations if no
+    /// coordinate is left.
     ReducedMomenta,
     /// Quasi-velocities that are orthonormal in the kinetic metric.
     Orthonormal,
-    /// Quasi-velocities [given](crate::Model::give_quasi_velocity) in addition to those of the text: Hamel's
-    /// equations in these.
+    /// Quasi-velocities [given](crate::Model::give_quasi_velocity) in addition to those of the text, for
+    /// Hamel's equations.
     Given,
 }
 
 impl Variables {
-    /// All of them.
+    /// All choices of variables.
     pub const ALL: [Variables; 6] = [
         Variables::QuasiVelocities,
         Variables::Momenta,

@@ -2,8 +2,8 @@
 //!
 //! `classification` classifies conditions on positions and velocities by Frobenius' test. It uses `binding`,
 //! which finds the constraints that bind the motion, with the help of states found by `positions`; `reach`,
-//! the allowed velocities; and `involutive`, the directions that these reach by commutators. `combinations`
-//! finds constraints that are integrable together.
+//! which finds the allowed velocities; and `involutive`, which finds the directions that these velocities
+//! reach by commutators. `combinations` finds constraints that are integrable together.
 
 pub(crate) mod binding;
 pub(crate) mod classification;

@@ -28,12 +28,13 @@ pub enum NonholoError {
         /// The name of the first constraint that is not affine.
         constraint: String,
     },
-    /// A constraint that no velocity satisfies together with others.
+    /// A constraint that contradicts others: no velocity satisfies them all.
     #[error("the constraint `{constraint}` contradicts {}", quoted(others))]
     Contradictory {
         /// Its name.
         constraint: String,
-        /// The constraints that it contradicts; empty if no velocity satisfies it even by itself.
+        /// The constraints that it contradicts; empty if no velocity satisfies this constraint even by
+        /// itself.
         others: Vec<String>,
     },
     /// An error of the derivation.

@@ -1,9 +1,9 @@
 //! Nonholonomic constraints in quasi-velocities: their classification, equations of motion, reactions.
 //!
 //! Numbers in brackets are those of the equations in V. V. Rumyantsev, *On Poincaré–Chetaev's equations*
-//! (1994), with its misprints corrected; conventions are those of [`pc_mech`]. Of k quasi-velocities, l are
-//! free and have indices r, s = 1..l; the other k − l are kept at zero and have indices α = l+1..k. The index
-//! m runs over all of them. The library is independent of units: any consistent units can be used.
+//! (1994), with its misprints corrected; the conventions are those of [`pc_mech`]. Of k quasi-velocities, l
+//! are free and have indices r, s = 1..l; the other k − l are kept at zero and have indices α = l+1..k. The
+//! index m runs over all k. The library is independent of units: any consistent units can be used.
 //!
 //! # Which constraints are nonholonomic
 //!
@@ -115,10 +115,10 @@
 //!
 //! d/dt ∂θ/∂η_s = (c_rs^m η_r + c_0s^m) ∂θ/∂η_m + (c_rs^α η_r + c_0s^α)(∂T/∂η_α)_0 + X_s (θ + U) + Q_s, m ≤ l (32).
 //!
-//! Without the second term, as if the constraints had been substituted into L before differentiation, they would be
-//! wrong. [`Constrained::free_system`] counts this term among the forces: it is a complete
-//! [`System`](pc_mech::System) of l quasi-velocities, whose canonical equations are (34). Its bracket does not
-//! satisfy Jacobi's identity.
+//! Without the second term, as if the constraints had been substituted into L before differentiation, these
+//! equations would be wrong. [`Constrained::free_system`] counts this term among the forces: the result is a
+//! complete [`System`](pc_mech::System) of l quasi-velocities, whose canonical equations are (34). Its bracket
+//! does not satisfy Jacobi's identity.
 //!
 //! ```
 //! # use pc_mech::{Graph, System};
@@ -176,8 +176,9 @@
 //!
 //! # Around it
 //!
-//! Below: [`pc_mech`], the systems on which constraints act. Above: [pc-model](../pc_model/index.html), which classifies the constraints
-//! of a text model, and [pc-analysis](../pc_analysis/index.html), which finds invariant measures and Chaplygin's multiplier.
+//! Below: [`pc_mech`], which provides the systems on which constraints act. Above: [pc-model](../pc_model/index.html), which classifies
+//! the constraints of a text model, and [pc-analysis](../pc_analysis/index.html), which finds invariant measures and Chaplygin's
+//! multiplier.
 
 mod classification;
 mod error;

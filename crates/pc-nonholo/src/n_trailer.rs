@@ -5,7 +5,7 @@ use pc_mech::{Expr, Graph, System, SystemBuilder};
 use crate::error::NonholoError;
 use crate::reduction::constrained::Constrained;
 
-/// A body on one axle, which does not slip sideways.
+/// A body on one axle that does not slip sideways.
 #[derive(Clone, Copy, Debug)]
 pub struct Wagon<'g> {
     /// Mass.
@@ -20,7 +20,7 @@ pub struct Wagon<'g> {
 ///
 /// The coordinates are the midpoint (x, y) of the car's axle and the headings θ0..θn; the quasi-velocities
 /// are the car's speed v, its turning rate ω, and the sideways velocities u0..un of the axles, which the
-/// wheels prevent. If v_i is the forward speed of axle i and ℓ_i its distance from the preceding one,
+/// wheels prevent. If v_i is the forward speed of axle i and ℓ_i its distance from the preceding axle,
 ///
 ///   v_i = v_{i−1} cos δ − u_{i−1} sin δ,   ℓ_i θ̇_i = v_{i−1} sin δ + u_{i−1} cos δ − u_i,   δ = θ_{i−1} − θ_i.
 ///

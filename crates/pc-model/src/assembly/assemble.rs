@@ -25,7 +25,7 @@ pub fn derivations() -> usize {
 }
 
 impl Model {
-    /// The mechanical system of the model, with its expressions in `graph`, and its start state.
+    /// The mechanical system of the model, with its expressions in `graph`, and the start state.
     ///
     /// # Errors
     /// [`ModelError`] at the place in the file that causes the error.
@@ -43,8 +43,8 @@ impl Model {
     /// Runs `work` on the mechanical system, whose expressions live only as long as it runs.
     ///
     /// # Errors
-    /// The errors of [`assemble`](Model::assemble), those of `work`, and [`ErrorKind::Spent`](crate::ErrorKind::Spent) if it
-    /// reaches the [limits](Model::limit).
+    /// The errors of [`assemble`](Model::assemble), those of `work`, and [`ErrorKind::Spent`](crate::ErrorKind::Spent) if
+    /// the [limits](Model::limit) are reached.
     pub fn derived<T, E: From<ModelError>>(
         &self,
         work: impl FnOnce(&Assembly<'_>) -> Result<T, E>,
@@ -63,10 +63,10 @@ pub(super) struct Begun<'g> {
     pub(super) t_start: f64,
     pub(super) frame: Frame<'g>,
     pub(super) constraints: Vec<Written<'g>>,
-    /// All quasi-velocities, the declared ones first.
+    /// All quasi-velocities, with the declared ones first.
     pub(super) eta: Vec<Expr<'g>>,
     declared: usize,
-    /// The number of quasi-velocities, counted from the first, that determine the others.
+    /// The number of quasi-velocities that come first and determine the others.
     pub(super) prescribed: usize,
     /// The velocities x' with their values b η + b_0.
     pub(super) x_dot: Vec<(Expr<'g>, Expr<'g>)>,

@@ -9,7 +9,7 @@ use crate::model::model::Model;
 use crate::names::scope::{Scope, entry};
 use crate::names::stage::Stage;
 
-/// Assembles a model as expressions of a graph; each part has its own file.
+/// Assembles a model as expressions of a graph; each part of the work has its own file.
 pub(super) struct Assembler<'g, 'm> {
     pub(super) model: &'m Model,
     pub(super) graph: &'g Graph,

@@ -15,8 +15,8 @@ use crate::document::Document;
 
 /// The system of a model, with the state from which its motion starts.
 pub struct Assembly<'g> {
-    /// The system, without its constraints. Its quasi-velocities are the declared ones and those defined by
-    /// constraints.
+    /// The system, without its constraints. The quasi-velocities of the system are the declared ones and
+    /// those defined by constraints.
     pub system: System<'g>,
     /// Its constraints.
     pub constraints: ConstraintTreatment<'g>,
@@ -31,15 +31,15 @@ pub struct Assembly<'g> {
     pub declared: usize,
     /// The events, in the order in which simultaneous events are handled.
     pub events: Vec<Event<'g>>,
-    /// The definitions of the text, with ẋ = b η + b_0 substituted, except those that have different meanings
-    /// in different places.
+    /// The definitions of the text, with ẋ = b η + b_0 substituted, except definitions that have different
+    /// meanings in different places.
     pub definitions: Vec<(String, Expr<'g>)>,
     /// The quasi-velocities given in addition to those of the text, as linear forms in those of the system.
     pub given: Vec<(Expr<'g>, Expr<'g>)>,
     /// The solution of Hamilton–Jacobi's equation in the text, if there is one.
     pub action: Option<Action<'g>>,
     /// The bodies whose masses change with time or first-order states: they obey D_t (m v) = F, so that the
-    /// mass they lose or take up is at rest.
+    /// mass that they lose or take up is at rest.
     pub changing_masses: Vec<String>,
     /// The text of the model, in which errors are located.
     pub(crate) document: Arc<Document>,
@@ -69,8 +69,8 @@ impl<'g> Assembly<'g> {
         self.document.stage(self.system.graph(), "what was asked for", || Ok(()))
     }
 
-    /// Runs `work` on this system. If the [limits](crate::Model::limit) are reached before or during it, the
-    /// result is an error that names this stage, whatever `work` returns.
+    /// Runs `work` on this system. If the [limits](crate::Model::limit) are reached before or during `work`,
+    /// the result is an error that names this stage, whatever `work` returns.
     ///
     /// # Errors
     /// [`ErrorKind::Spent`](crate::ErrorKind::Spent), and the errors of `work`.
@@ -93,7 +93,7 @@ impl<'g> Assembly<'g> {
     /// The equations of motion in independent quasi-velocities.
     ///
     /// # Errors
-    /// [`ModelError`] if they cannot be derived.
+    /// [`ModelError`] if the equations cannot be derived.
     pub fn equations(&self) -> Result<Equations<'g>, ModelError> {
         let equations = || self.placed(self.constraints.equations(&self.system, &self.at_start()));
         self.document.stage(self.system.graph(), "the equations of motion", equations)
@@ -111,24 +111,24 @@ impl<'g> Assembly<'g> {
     /// The system of the independent quasi-velocities whose equations (9) are the equations of motion.
     ///
     /// # Errors
-    /// [`ModelError`] if it cannot be derived.
+    /// [`ModelError`] if the system cannot be derived.
     pub fn free_system(&self) -> Result<System<'g>, ModelError> {
         self.placed(self.constraints.free_system(&self.system, &self.at_start()))
     }
 
-    /// Each quasi-velocity of the system as a function of time, coordinates and the `free` quasi-velocities:
-    /// those of a [free system](Assembly::free_system), or all.
+    /// Each quasi-velocity of the system as a function of time, coordinates and the `free` quasi-velocities,
+    /// which are either those of a [free system](Assembly::free_system) or all.
     ///
     /// # Errors
-    /// [`ModelError`] if these do not determine the others.
+    /// [`ModelError`] if the `free` quasi-velocities do not determine the others.
     pub fn quasi_velocities_of(&self, free: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, ModelError> {
         self.placed(self.constraints.quasi_velocities_of(self.system.quasi_velocities(), free))
     }
 
     /// Whether it is proved that the motion conserves its energy (that of all velocities if multipliers
     /// enforce constraints, otherwise that of the free ones): dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s
-    /// vanishes where the constraints hold, and these are homogeneous in the velocities, so that their
-    /// reactions do no work.
+    /// vanishes where the constraints hold, and the constraints are homogeneous in the velocities, so that
+    /// their reactions do no work.
     pub fn keeps_energy(&self) -> bool {
         let (system, graph) = (&self.system, self.system.graph());
         match self.constraints.formulation() {
@@ -149,7 +149,7 @@ impl<'g> Assembly<'g> {
         self.start_of(self.system.quasi_velocities())
     }
 
-    /// The start state of a motion whose state has these components: coordinates and some of the
+    /// The start state of a motion whose state consists of these components: coordinates and some of the
     /// quasi-velocities.
     pub fn start_of(&self, components: &[Expr<'g>]) -> Vec<f64> {
         let at = self.at_start();

@@ -9,7 +9,7 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::document::{self, Expression, Orientation};
 use crate::names::stage::Stage;
 
-/// A body in the form that the mechanics takes.
+/// A body in the form that `pc_mech` accepts.
 pub(super) enum SystemBody<'g> {
     /// A body without orientation.
     Particle(Particle<'g>),

@@ -20,9 +20,9 @@ struct Resultants<'g> {
 }
 
 impl<'g> Assembler<'g, '_> {
-    /// The system with the forces and torques of the reactions on bodies substituted in its integrals and
-    /// outputs, and added to the outputs if all reactions are to be observed; then descriptions of the
-    /// undetermined reactions.
+    /// The system, with the forces and torques of the reactions on bodies substituted in its integrals and
+    /// outputs, and descriptions of the undetermined reactions. If all reactions are to be observed, these
+    /// forces and torques are added to the outputs.
     ///
     /// # Errors
     /// [`MeaningError::ForceNotDetermined`] if the model names an undetermined reaction.

@@ -46,7 +46,7 @@ pub enum ConstraintFormulation<'g> {
     Free,
     /// Each constraint makes a quasi-velocity of the system vanish: the others have equations (30).
     Vanishing(Box<Constrained<'g>>),
-    /// The constraints are of any other kind, and have multipliers.
+    /// The constraints are of any other kind, and are enforced by multipliers.
     Multipliers(Box<MultiplierFormulation<'g>>),
 }
 
@@ -64,7 +64,7 @@ impl<'g> ConstraintTreatment<'g> {
         ConstraintTreatment::nothing(Vec::new())
     }
 
-    /// No constraint that binds; `redundant` are those that were dropped.
+    /// The treatment if no constraint binds; `redundant` are the constraints that were dropped.
     pub(crate) fn nothing(redundant: Vec<Redundant>) -> ConstraintTreatment<'g> {
         ConstraintTreatment {
             formulation: ConstraintFormulation::Free,
@@ -78,7 +78,7 @@ impl<'g> ConstraintTreatment<'g> {
         }
     }
 
-    /// Constraints that bind, in this formulation.
+    /// The treatment of constraints that bind, in this formulation.
     pub(crate) fn new(
         formulation: ConstraintFormulation<'g>,
         multipliers: Multipliers<'g>,
@@ -117,8 +117,8 @@ impl<'g> ConstraintTreatment<'g> {
         &self.independent
     }
 
-    /// The equations with multipliers, if these are integrated; none if independent velocities were
-    /// requested.
+    /// The equations with multipliers, if these equations are integrated; `None` if independent velocities
+    /// were requested.
     pub fn held(&self) -> Option<&Multipliers<'g>> {
         match &self.formulation {
             ConstraintFormulation::Multipliers(held) if self.independent.is_empty() => {
@@ -194,7 +194,7 @@ impl<'g> ConstraintTreatment<'g> {
     /// constraints are regular.
     ///
     /// # Errors
-    /// [`NonholoError`]; it does not occur for constraints that could be classified there.
+    /// [`NonholoError`]; it does not occur if the constraints could be classified at these values.
     pub fn combinations_found(
         &self,
         at: &[(Expr<'g>, f64)],
@@ -218,20 +218,21 @@ impl<'g> ConstraintTreatment<'g> {
         Some(positions.map(Constraint::expression).collect())
     }
 
-    /// The constraints that follow from others and were dropped.
+    /// The constraints that follow from other constraints and were dropped.
     pub fn redundant(&self) -> &[Redundant] {
         &self.redundant
     }
 
-    /// Descriptions of the reaction forces on bodies that are observed but not determined by virtual work: `the
-    /// force on` and the name of the body.
+    /// Descriptions of the reaction forces on bodies that are observed but not determined by virtual work: each
+    /// is `the force on`, followed by the name of the body.
     pub fn undetermined(&self) -> &[String] {
         &self.undetermined
     }
 
     /// The system in a frame in which the constraints make quasi-velocities vanish: the frame of the model if it is
-    /// such a frame, otherwise the one that is best at the values `at` of time and state. None if there are no
-    /// constraints, only integrable ones enforced by multipliers, or some that are not affine in the velocities.
+    /// such a frame, otherwise the frame that is best at the values `at` of time and state. `None` if there are no
+    /// constraints, if all of them are integrable and enforced by multipliers, or if one is not affine in the
+    /// velocities.
     ///
     /// # Errors
     /// [`NonholoError`] if there is no such frame.
@@ -253,7 +254,7 @@ impl<'g> ConstraintTreatment<'g> {
 
     /// The symbols λ of the reactions with their values in the frame of
     /// [`constrained`](ConstraintTreatment::constrained), as functions of time, coordinates and the free
-    /// quasi-velocities, or all quasi-velocities where constraints are not affine in them; empty if integrable
+    /// quasi-velocities, or of all quasi-velocities where constraints are not affine in these; empty if integrable
     /// constraints are enforced by multipliers. The values contain the symbols of the accelerations if that makes them
     /// shorter.
     ///
@@ -280,19 +281,20 @@ impl<'g> ConstraintTreatment<'g> {
         Ok(multipliers.reactions().iter().copied().zip(places.map(|a| values[a])).collect())
     }
 
-    /// The equations with multipliers, if a constraint is not affine in the velocities: then there are no
+    /// The equations with multipliers, if a constraint is not affine in the velocities, so that there are no
     /// independent velocities.
     pub fn nonlinear(&self) -> Option<&Multipliers<'g>> {
         self.multipliers.as_ref().filter(|multipliers| multipliers.is_nonlinear())
     }
 
     /// The equations of motion in independent quasi-velocities: (9), (14) or (30). Under constraints enforced by
-    /// multipliers, they use the requested independent quasi-velocities or, among the choices regular at `at`,
-    /// those whose equations are shortest, and the reactions are substituted in observables. If a constraint is not
-    /// affine in the velocities, they are the equations in all velocities, with the reactions substituted.
+    /// multipliers, the equations use the requested independent quasi-velocities or, among the choices regular at
+    /// `at`, those whose equations are shortest, and the reactions are substituted in observables. If a constraint
+    /// is not affine in the velocities, the result is the equations in all velocities, with the reactions
+    /// substituted.
     ///
     /// # Errors
-    /// [`NonholoError`] if they cannot be derived.
+    /// [`NonholoError`] if the equations cannot be derived.
     pub fn equations(
         &self,
         system: &System<'g>,

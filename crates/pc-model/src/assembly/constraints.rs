@@ -14,13 +14,13 @@ use crate::document;
 use crate::document::DeclaredKind;
 use crate::names::stage::Stage;
 
-/// A constraint of the text with its expression, in which x' are symbols.
+/// A constraint of the text with its expression, in which the velocities x' are symbols.
 pub(super) struct Written<'g> {
     place: usize,
     value: Expr<'g>,
     /// Whether it is declared nonlinear.
     nonlinear: bool,
-    /// The quasi-velocity that the constraint defines, if it completes the declared ones.
+    /// The quasi-velocity that the constraint defines, if this quasi-velocity completes the declared ones.
     defines: Option<Expr<'g>>,
 }
 
@@ -30,7 +30,7 @@ impl<'g> Written<'g> {
         self.defines = Some(quasi_velocity);
     }
 
-    /// Whether it is declared nonlinear in the velocities.
+    /// Whether the constraint is declared nonlinear in the velocities.
     pub(super) fn is_nonlinear(&self) -> bool {
         self.nonlinear
     }
@@ -79,8 +79,8 @@ impl<'g> Assembler<'g, '_> {
         name
     }
 
-    /// The treatment of the constraints, and the start that satisfies them; `at` are values of all symbols
-    /// there, and the first `prescribed` quasi-velocities determine the others.
+    /// The treatment of the constraints, and the start that satisfies them; `at` are the values of all
+    /// symbols at the start, and the first `prescribed` quasi-velocities determine the others.
     pub(super) fn treatment(
         &self,
         system: &System<'g>,
@@ -191,8 +191,8 @@ impl<'g> Assembler<'g, '_> {
         Ok(Some(Reacting { system, multipliers, undetermined }))
     }
 
-    /// The cheapest formulation: without the vanishing quasi-velocities if each constraint only says that one
-    /// of them vanishes, otherwise with multipliers.
+    /// The cheapest formulation: without the vanishing quasi-velocities if each constraint only makes one
+    /// quasi-velocity vanish, otherwise with multipliers.
     fn choose(
         &self,
         Reacting { system, multipliers, undetermined }: Reacting<'g>,
@@ -241,7 +241,7 @@ impl<'g> Assembler<'g, '_> {
         }
     }
 
-    /// Checks that constraints declared nonlinear are nonlinear: affine ones allow more forms of the
+    /// Checks that constraints declared nonlinear are nonlinear: affine constraints allow more forms of the
     /// equations and Frobenius' test.
     fn check_nonlinear(&self, system: &System<'g>, constraints: &[Constraint<'g>]) -> Result<(), ModelError> {
         for constraint in constraints.iter().filter(|constraint| constraint.is_nonlinear()) {

@@ -11,11 +11,11 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::document::Expression;
 use crate::names::stage::Stage;
 
-/// A coefficient smaller than this fraction of the largest in its row is not used as a pivot.
+/// A coefficient smaller than this fraction of the largest coefficient in its row is not used as a pivot.
 const SMALL: f64 = 1e-3;
 
 /// The quasi-velocities that complete the definitions to a frame: their symbols, their definitions in terms
-/// of x', and the constraints that they come from.
+/// of x', and the constraints from which they come.
 #[derive(Default)]
 struct Completion<'g> {
     symbols: Vec<Expr<'g>>,
@@ -27,12 +27,13 @@ impl<'g> Assembler<'g, '_> {
     /// The frame defined by η = a x' + a_0, and the quasi-velocities that complete the declared ones if there are
     /// fewer of these than coordinates.
     ///
-    /// The definitions, the constraints on velocities that contain x', and the time derivatives of those on
-    /// positions must together determine x'. If all constraints are on velocities, their left-hand sides
-    /// complete the frame, as quasi-velocities that vanish. If some are on positions, velocities x' complete
-    /// the frame, provided that its matrix is then regular everywhere; the constraints then have multipliers,
-    /// and other independent velocities are taken wherever the η do not determine x'. Otherwise the
-    /// constraints complete the frame, and it is singular only where the η do not determine x'.
+    /// The definitions, the constraints on velocities that contain x', and the time derivatives of the
+    /// constraints on positions must together determine x'. If all constraints are on velocities, their
+    /// left-hand sides complete the frame, as quasi-velocities that vanish. If some constraints are on
+    /// positions, velocities x' complete the frame, provided that its matrix is then regular everywhere; the
+    /// constraints then have multipliers, and other independent velocities are taken wherever the η do not
+    /// determine x'. Otherwise the constraints complete the frame, and it is singular only where the η do not
+    /// determine x'.
     pub(super) fn frame_of_definitions(
         &mut self,
         time: Expr<'g>,
@@ -104,9 +105,9 @@ impl<'g> Assembler<'g, '_> {
         definitions.iter().zip(texts).map(row).collect()
     }
 
-    /// The independent constraints that restrict the velocities left open by the definitions, in terms of the
-    /// velocities x' and each with its index in the text; and the system that they constrain. In them, each η
-    /// is replaced by its definition.
+    /// The independent constraints that restrict the velocities left open by the definitions, and the system
+    /// that they constrain. The constraints are in terms of the velocities x', and each comes with its index
+    /// in the text. In these constraints, each η is replaced by its definition.
     ///
     /// If there are as many definitions as coordinates, constraints on positions are left out.
     fn completing(
@@ -179,8 +180,8 @@ impl<'g> Assembler<'g, '_> {
     }
 
     /// The completion by the constraints themselves: first those on velocities, which are marked as defining
-    /// quasi-velocities. If there are more than needed, only those that are independent of the `rows` are
-    /// used.
+    /// quasi-velocities. If there are more constraints than needed, only those that are independent of the
+    /// `rows` are used.
     fn completed_by(
         &self,
         mut rows: Vec<Vec<Expr<'g>>>,

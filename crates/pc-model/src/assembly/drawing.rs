@@ -22,7 +22,7 @@ pub enum Shape<'g> {
         /// Its name.
         label: Option<String>,
     },
-    /// A broken line.
+    /// A polyline.
     Line {
         /// Its corners.
         through: Vec<Spot<'g>>,
@@ -31,7 +31,7 @@ pub enum Shape<'g> {
     Disc {
         /// Its centre.
         at: Spot<'g>,
-        /// A vector perpendicular to it.
+        /// A vector perpendicular to the disc.
         normal: Spot<'g>,
         /// Its radius.
         radius: Expr<'g>,
@@ -47,14 +47,14 @@ pub enum Shape<'g> {
     Box {
         /// Its centre.
         at: Spot<'g>,
-        /// The lengths of its edges.
+        /// The lengths of the box's edges.
         size: Spot<'g>,
         /// The rotation matrix from its axes to the fixed axes.
         rotation: Matrix<Expr<'g>>,
     },
     /// The axes of a body with an orientation.
     Axes {
-        /// Their common point.
+        /// The common point of the axes.
         at: Spot<'g>,
         /// The rotation matrix from its axes to the fixed axes.
         rotation: Matrix<Expr<'g>>,
@@ -73,7 +73,7 @@ pub enum Shape<'g> {
     },
     /// Words.
     Text {
-        /// The position where they begin.
+        /// The position where the words begin.
         at: Spot<'g>,
         /// The words.
         text: String,
@@ -156,7 +156,7 @@ fn resolved<'g>(scope: &mut Scope<'g, '_>, draw: &Draw) -> Result<Shape<'g>, Mod
     })
 }
 
-/// A position in space; two expressions give a position in a plane.
+/// A position in space; two expressions give a position in the plane.
 fn spot<'g>(scope: &mut Scope<'g, '_>, place: &[Expression], stage: Stage) -> Result<Spot<'g>, ModelError> {
     let mut at = [Expr::ZERO; 3];
     for (value, expression) in at.iter_mut().zip(place) {
@@ -177,8 +177,8 @@ fn rotation<'g>(
     Ok(Matrix::from_fn(3, 3, |i, j| values[3 * i + j]))
 }
 
-/// For each body, its mass centre and a rod from its joint to each joint on it, or to the mass centre if
-/// there are none.
+/// For each body, its mass centre and a rod from its joint to each joint that it carries, or to the mass
+/// centre if it carries none.
 fn on_joints<'g>(assembly: &Assembly<'g>) -> Vec<Shape<'g>> {
     let Some(tree) = assembly.system.tree() else { return Vec::new() };
     let (motions, graph) = (tree.motions(), assembly.system.graph());
@@ -202,7 +202,7 @@ fn on_joints<'g>(assembly: &Assembly<'g>) -> Vec<Shape<'g>> {
 }
 
 impl<'g> Shape<'g> {
-    /// The functions that describe it, in an order that depends only on the kind of shape.
+    /// The functions that describe the shape, in an order that depends only on the kind of shape.
     pub fn functions(&self) -> Vec<Expr<'g>> {
         match self {
             Shape::Point { at, .. } | Shape::Trace { at } | Shape::Text { at, .. } => at.to_vec(),
@@ -236,7 +236,7 @@ impl<'g> Shape<'g> {
     }
 }
 
-/// The entries, row by row.
+/// The entries of a rotation matrix, row by row.
 fn entries<'g>(rotation: &Matrix<Expr<'g>>) -> Vec<Expr<'g>> {
     (0..9).map(|ij| rotation[(ij / 3, ij % 3)]).collect()
 }

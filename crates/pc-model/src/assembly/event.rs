@@ -2,14 +2,14 @@
 
 use pc_expr::{Direction, Expr};
 
-/// An event of a model, in expressions of time, coordinates, all quasi-velocities of the system and parameters.
+/// An event of a model, in terms of time, coordinates, all quasi-velocities of the system and parameters.
 #[derive(Clone, Debug)]
 pub struct Event<'g> {
     /// Its name.
     pub name: String,
     /// The expression that passes through zero.
     pub when: Expr<'g>,
-    /// The direction in which it passes through zero.
+    /// The direction in which the expression passes through zero.
     pub direction: Direction,
     /// Whether the motion ends there.
     pub terminal: bool,

@@ -19,8 +19,8 @@ impl<'g> Assembler<'g, '_> {
         events.iter().map(|event| self.at_event(&event.when, x_dot)).collect()
     }
 
-    /// The events whose functions are `crossings`, with their resets, which need not have a value before the
-    /// event. First-order states begin at component `first_state` of the state.
+    /// The events whose functions are `crossings`, with their resets; the new values need not be defined
+    /// before the event. First-order states begin at component `first_state` of the state.
     pub(super) fn events(
         &mut self,
         crossings: Vec<Expr<'g>>,

@@ -15,8 +15,8 @@ pub struct NotForced {
 impl Model {
     /// Declares that a force computed outside the model, such as that of a controller, acts on a
     /// quasi-velocity, or on a coordinate if no quasi-velocity is declared. The system then has an [external
-    /// force](pc_mech::System::external_forces), and a motion has one more input: it is zero until it is set,
-    /// or is [given by a function](pc_mech::Motion::forced).
+    /// force](pc_mech::System::external_forces), and a motion has one more input, which is zero until it is
+    /// set, or is [given by a function](pc_mech::Motion::forced).
     ///
     /// ```
     /// use pc_mech::{Graph, VectorField};

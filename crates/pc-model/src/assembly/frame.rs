@@ -1,4 +1,4 @@
-//! The frame of a model, and the errors in it.
+//! The frame of a model, and errors in the frame.
 
 use pc_mech::{AlgebraError, Expr, Frame};
 

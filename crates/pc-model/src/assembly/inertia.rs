@@ -1,4 +1,4 @@
-//! Joints whose motion no inertia resists.
+//! Checks for joints whose motion no inertia resists.
 
 use pc_mech::Expr;
 
@@ -13,7 +13,7 @@ const FAST: f64 = 1e6;
 /// The rounding error that is left where the kinetic energy vanishes, as a fraction of its terms.
 const ROUNDING: f64 = 1e-12;
 
-/// How a joint moves: along a direction or about it.
+/// How a joint moves: along an axis or about it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
     Slide,
@@ -21,10 +21,11 @@ enum Way {
 }
 
 impl<'g> Assembly<'g> {
-    /// Checks that some inertia resists each joint by itself: ∂²L/∂η_s² vanishes for a point mass on its axis.
+    /// Checks that some inertia resists the motion of each joint by itself: ∂²L/∂η_s² vanishes, for example,
+    /// if a body that turns about an axis is a point mass on that axis.
     ///
-    /// Constraints may take the place of inertia, and so may a kinetic energy in `[lagrangian]`; models that have
-    /// either are not checked here.
+    /// Constraints may take the place of inertia, and so may a kinetic energy in `[lagrangian]`; models with
+    /// either of these are not checked here.
     pub(crate) fn check_inertia(&self) -> Result<(), ModelError> {
         let document = &self.document;
         let is_given =

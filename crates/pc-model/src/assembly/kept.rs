@@ -15,7 +15,7 @@ impl<T> Default for Kept<T> {
 }
 
 impl<T: Clone> Kept<T> {
-    /// The result at the values `at`, derived anew unless they are those of the first successful call.
+    /// The result at the values `at`, derived anew unless `at` are those of the first successful call.
     ///
     /// # Errors
     /// The errors of the derivation, which the next call tries again.

@@ -1,10 +1,10 @@
-//! Checks on bodies whose orientation is a matrix of redundant coordinates: it must be a rotation at the
-//! start, and along every motion from there.
+//! Checks on bodies whose orientation is a matrix in redundant coordinates: the matrix must be a rotation at
+//! the start, and along every motion from there.
 //!
 //! If there are as many coordinates as quasi-velocities, RᵀR has to be a multiple of 1 everywhere, which
 //! `pc_mech` checks. Redundant coordinates, such as nine direction cosines, may give a rotation only on the
-//! surface that contains the motion, which is known from the start and from the operators X_s along the
-//! surface.
+//! surface that contains the motion, a surface that is known from the start and from the operators X_s along
+//! it.
 
 use pc_algebra::Frame;
 use pc_mech::Expr;
@@ -51,8 +51,9 @@ impl<'g> Assembler<'g, '_> {
         Ok(())
     }
 
-    /// The largest defect of the derivatives of RᵀR along the operators of the frame, X_0 included, that
-    /// exceeds rounding error for an RᵀR of this size. Missing values are reported elsewhere.
+    /// The largest deviation of the derivatives of RᵀR along the operators of the frame, X_0 included, from
+    /// multiples of 1, if it exceeds rounding error for an RᵀR of this size. Missing values are reported
+    /// elsewhere.
     fn defect_along(
         &self,
         frame: &Frame<'g>,
@@ -77,8 +78,8 @@ impl<'g> Assembler<'g, '_> {
     }
 }
 
-/// The deviation from a multiple of 1 of a symmetric matrix, given by its diagonal and then its other
-/// entries.
+/// The deviation of a symmetric matrix, given by its diagonal and then its other entries, from a multiple of
+/// 1.
 fn defect(matrix: &[f64]) -> f64 {
     let (diagonal, beside) = matrix.split_at(3);
     let mean = diagonal.iter().sum::<f64>() / 3.0;

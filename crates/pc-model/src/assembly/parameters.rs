@@ -1,4 +1,4 @@
-//! The values of parameters and inputs: numbers, expressions in the preceding ones, and tables.
+//! The values of parameters and inputs: numbers, expressions in preceding values, and tables.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::document::{Document, Expression, InputValue, Name};
 use crate::names::scope::Scope;
 
 /// The values of the parameters of a model, then of its inputs, in the order of declaration. A value given by
-/// an expression in earlier ones is updated with these until it is itself set.
+/// an expression in earlier values is updated whenever they change, until it is itself set.
 #[derive(Clone, Debug)]
 pub struct Parameters {
     values: Vec<f64>,
@@ -34,8 +34,8 @@ enum Formula {
     Wrong(ModelError),
 }
 
-/// The names of parameters and inputs, in their order, each with its expression; an input with a table has
-/// none.
+/// The names of parameters and inputs, in their order, each with its expression; an input with a table has no
+/// expression.
 fn written(document: &Document) -> impl Iterator<Item = (&Name, Option<&Expression>)> {
     let parameters =
         document.parameters.iter().map(|parameter| (&parameter.name, Some(&parameter.expression)));
@@ -89,7 +89,7 @@ impl Parameters {
         &self.values
     }
 
-    /// The tables of inputs, with their indices.
+    /// The tables of inputs, each with the index of its input among the values.
     pub fn tables(&self) -> Vec<(usize, &Arc<Table>)> {
         let all = self.formulas.iter().enumerate();
         all.filter_map(|(place, formula)| match formula {
@@ -100,10 +100,10 @@ impl Parameters {
     }
 
     /// Gives the parameter or input with index `place` a value, which replaces its expression. Values that
-    /// are expressions in it are updated.
+    /// are expressions in the new value are updated.
     ///
     /// # Panics
-    /// If there is no such parameter.
+    /// Panics if there is no such parameter.
     pub fn set(&mut self, place: usize, value: f64) {
         self.values[place] = value;
         self.formulas[place] = Formula::Number;
@@ -113,7 +113,7 @@ impl Parameters {
     /// Makes parameter number `place` follow a table from `t_start` on, instead of its present value.
     ///
     /// # Panics
-    /// If there is no such parameter.
+    /// Panics if there is no such parameter.
     pub(crate) fn set_table(&mut self, place: usize, table: Table, t_start: f64) {
         self.values[place] = table.at(t_start).unwrap_or(f64::NAN);
         self.formulas[place] = Formula::Table(Arc::new(table));
@@ -123,7 +123,7 @@ impl Parameters {
     /// Sets all values, which replace the expressions. Tables stay in use.
     ///
     /// # Panics
-    /// If the number of values is wrong.
+    /// Panics if the number of values is wrong.
     pub fn set_all(&mut self, values: &[f64]) {
         self.values.copy_from_slice(values);
         for formula in &mut self.formulas {
@@ -144,8 +144,8 @@ impl Parameters {
     }
 
     /// # Errors
-    /// [`ModelError`] at the first entry that has no finite value; `document` is the one these values belong
-    /// to.
+    /// [`ModelError`] at the first entry that has no finite value; `document` is the document to which these
+    /// values belong.
     pub(crate) fn check(&self, document: &Document) -> Result<(), ModelError> {
         for ((formula, value), (name, expression)) in
             self.formulas.iter().zip(&self.values).zip(written(document))

@@ -1,4 +1,4 @@
-//! The names of the forces and torques of reactions on bodies.
+//! The names of the forces and torques that reactions exert on bodies.
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 

@@ -16,14 +16,14 @@ use crate::names::stage::Stage;
 /// remainder is rounding error.
 const DEPENDENT: f64 = 1e-9;
 
-/// Velocities are considered equal if they differ by less than this fraction of those from which they are
-/// determined.
+/// Velocities are considered equal if they differ by less than this fraction of the velocities from which
+/// they are determined.
 const OFF: f64 = 1e-8;
 
 /// The parts of the start that are given.
 pub(super) struct Given {
-    /// The values of coordinates, then of the declared quasi-velocities, or of velocities if none is
-    /// declared; zero if not given.
+    /// The values of coordinates, then of the declared quasi-velocities, or of velocities if no
+    /// quasi-velocity is declared; values that are not given are zero.
     pub(super) values: Vec<f64>,
     /// Whether each of these values is given.
     is_given: Vec<bool>,
@@ -34,8 +34,8 @@ pub(super) struct Given {
     pub(super) states: Vec<f64>,
 }
 
-/// The given start values alone: those of the coordinates, of the declared quasi-velocities or else the
-/// velocities, and of the first-order states.
+/// The given start values alone: those of the coordinates, of the declared quasi-velocities or, if there are
+/// none, of the velocities, and of the first-order states.
 ///
 /// # Errors
 /// [`ModelError`] if a value is not a number.
@@ -106,11 +106,11 @@ impl<'g> Assembler<'g, '_> {
 
     /// The values at the start of the coordinates and of all quasi-velocities `eta` of the frame.
     /// Quasi-velocities that are not given are determined from given velocities, b η + b_0 = x', and from the
-    /// constraints; if these leave them open, the declared ones are zero.
+    /// constraints; declared quasi-velocities that these leave open are zero.
     ///
     /// # Errors
-    /// [`MeaningError::StartVelocity`] for a velocity that the others contradict; [`MeaningError::StartOpen`]
-    /// if the quasi-velocities that complete the definitions are left open.
+    /// [`MeaningError::StartVelocity`] for a velocity that the other velocities contradict;
+    /// [`MeaningError::StartOpen`] if the quasi-velocities that complete the definitions are left open.
     pub(super) fn start_state(
         &self,
         frame: &Frame<'g>,
@@ -170,7 +170,7 @@ impl<'g> Assembler<'g, '_> {
     }
 
     /// The equations C η = −c_0 of the constraints that have values, with rows scaled to length one, so that
-    /// velocities are compared whatever the scale of a constraint.
+    /// the scale of a constraint does not affect how velocities are compared.
     fn conditions(
         &self,
         frame: &Frame<'g>,
@@ -259,14 +259,14 @@ impl Equations {
         (missing.abs() > OFF * value.abs().max(length * self.largest(row))).then_some(value - missing)
     }
 
-    /// The largest magnitude of the unknowns in a row, as far as they are known: a value that is small in
-    /// comparison is small in any units.
+    /// The largest magnitude of the unknowns in a row, as far as the equations determine them: a value that
+    /// is small in comparison is small in any units.
     fn largest(&self, row: &[f64]) -> f64 {
         let known = self.solution(row.len()).into_iter().zip(row).filter(|&(_, &entry)| entry != 0.0);
         known.fold(0.0, |largest, (value, _)| largest.max(value.abs()))
     }
 
-    /// The part of an equation that is independent of those already present.
+    /// The part of an equation that is independent of the equations already present.
     fn rest(&self, row: &[f64], value: f64) -> (Vec<f64>, f64) {
         let (mut rest, mut missing) = (row.to_vec(), value);
         // Two passes are enough.

@@ -7,8 +7,9 @@ use crate::model::model::Model;
 use crate::names::scope::Scope;
 
 impl<'g> Assembly<'g> {
-    /// The start of another model with the same text but other values, as [`start`](Assembly::start) is that of the
-    /// assembled model: it depends only on the frame and the constraints, so that nothing else is derived again.
+    /// The start of another model with the same text but other values, in the form of [`start`](Assembly::start) of
+    /// the assembled model: the start depends only on the frame and the constraints, so that nothing else is
+    /// derived again.
     ///
     /// # Errors
     /// [`ModelError`] if that model has no start.

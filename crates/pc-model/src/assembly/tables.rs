@@ -17,7 +17,7 @@ const COLUMNS: &str = "a file has a line of names, then lines of numbers, with c
 /// The table of an input; `None` for a constant.
 ///
 /// # Errors
-/// [`ModelError`] at an entry that is wrong or that names a wrong file.
+/// [`ModelError`] at an entry that is invalid or names an invalid file.
 pub(crate) fn of(document: &Document, input: &Input) -> Result<Option<Table>, ModelError> {
     match &input.value {
         InputValue::Constant(_) => Ok(None),

@@ -9,7 +9,7 @@ use crate::document::{self, Expression, JointRotation};
 use crate::names::points::hung;
 use crate::names::stage::Stage;
 
-/// The greatest deviation allowed of a matrix of constants from a rotation, and of the length of a quaternion
+/// The greatest allowed deviation of a matrix of constants from a rotation, and of the length of a quaternion
 /// from 1: the rounding error of numbers written with nine digits.
 const OFF: f64 = 1e-8;
 
@@ -48,7 +48,7 @@ impl<'g> Assembler<'g, '_> {
         Ok(Some(tree))
     }
 
-    /// The velocities ẋ of the coordinates of joints, which come first, in terms of η.
+    /// The velocities ẋ of the coordinates of joints, in terms of η; these coordinates come first.
     pub(super) fn joint_velocities(&mut self) -> Result<Vec<Expr<'g>>, ModelError> {
         let document = self.model.document();
         let mut bodies = Vec::with_capacity(document.tree.len());
@@ -89,8 +89,8 @@ impl<'g> Assembler<'g, '_> {
         Err(self.model.document().error(&place, MeaningError::NotARotation { defect, determinant }))
     }
 
-    /// Scales quaternions to length 1 at the start, if their length differs from 1 only by the rounding of the
-    /// written numbers; `start` begins with the values of the coordinates.
+    /// Scales quaternions to length 1 at the start, if their length differs from 1 only because the written
+    /// numbers are rounded; `start` begins with the values of the coordinates.
     pub(super) fn normalise_quaternions(&self, start: &mut [f64]) -> Result<(), ModelError> {
         let document = self.model.document();
         let mut first = 0;

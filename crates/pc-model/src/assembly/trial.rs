@@ -7,19 +7,20 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::model::model::Model;
 
-/// A start is considered to satisfy a constraint, up to the rounding of its digits, if a displacement of a coordinate or velocity
-/// by less than this fraction of it would make it do so. Small coordinates may be off by as much as larger ones in the constraint,
-/// and by as much as a coordinate of size 1.
+/// A start is considered to satisfy a constraint, up to the rounding of its digits, if changing a coordinate or velocity by less
+/// than this fraction of its value would make the start satisfy it exactly. Small coordinates may be off by as much as larger
+/// coordinates in the same constraint, and by as much as a coordinate of size 1.
 const OFF: f64 = 1e-8;
 
 /// If all coordinates in a constraint are smaller than this, they are presumably in other units, and 1 is not
-/// a measure for them.
+/// a measure of their size.
 const SMALL: f64 = 1e-2;
 
-/// A coordinate may always be off by this times [`OFF`]: the rounding error of numbers of order one, such as cos(π/2).
+/// A coordinate may always be off by this number times [`OFF`]: the rounding error of numbers of order one, such as
+/// cos(π/2).
 const LEAST: f64 = 1e-7;
 
-/// The indices of the components of the start that are left unmoved when it is moved onto the constraints.
+/// The indices of the components that stay as they are when the start is moved onto the constraints.
 pub(super) struct StartHeld {
     coordinates: Vec<usize>,
     quasi_velocities: Vec<usize>,
@@ -58,7 +59,7 @@ pub(super) struct Trial<'a, 'g> {
 }
 
 impl<'g> Trial<'_, 'g> {
-    /// The nearest state with the held components that satisfies the binding constraints.
+    /// The nearest state that has the same held components and satisfies the binding constraints.
     ///
     /// # Errors
     /// [`ModelError`] if none is found.
@@ -116,8 +117,8 @@ impl<'g> Trial<'_, 'g> {
         Ok(())
     }
 
-    /// Checks that dropped constraints hold wherever the binding ones do: a condition on positions may follow
-    /// from others only up to a constant.
+    /// Checks that dropped constraints hold wherever the binding constraints do: a condition on positions may
+    /// follow from others only up to a constant.
     ///
     /// # Errors
     /// [`MeaningError::Contradictory`]
@@ -157,7 +158,8 @@ impl<'g> Trial<'_, 'g> {
         }
     }
 
-    /// If the constraint or its rate does not vanish, a phrase that says which of the two, and its value.
+    /// If the constraint or its rate does not vanish, a phrase that says which of the two it is, and its
+    /// value.
     fn off(&self, constraint: &Constraint<'g>, state: &[f64]) -> Option<(&'static str, f64)> {
         let x = self.system.frame().coordinates();
         let eta = self.system.quasi_velocities();
@@ -169,7 +171,7 @@ impl<'g> Trial<'_, 'g> {
         position.or_else(|| self.misses(rate, state).map(|residual| ("its rate is", residual)))
     }
 
-    /// The value of an expression that should vanish, unless changing the `movable` symbols by a fraction
+    /// The value of an expression that should vanish, unless changing the `movable` symbols by the fraction
     /// [`OFF`] can make it zero.
     fn misses(&self, (value, movable): (Expr<'g>, &[Expr<'g>]), state: &[f64]) -> Option<f64> {
         let graph = self.system.graph();

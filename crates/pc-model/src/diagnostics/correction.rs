@@ -1,4 +1,4 @@
-//! The category of an error of meaning, and how to correct it.
+//! The category of an error in the meaning of a model, and how to correct it.
 
 use crate::diagnostics::category::Category;
 use crate::diagnostics::meaning::MeaningError;

@@ -42,7 +42,7 @@ fn on_one_line(text: &str) -> String {
     text.replace(is_hidden, "\u{fffd}")
 }
 
-/// The text, shortened if it is very long, as with names of a thousand letters.
+/// The text, shortened if it is very long, such as a name of a thousand letters.
 fn clipped(text: &str) -> String {
     match text.char_indices().nth(500) {
         Some((cut, _)) => format!("{}…", &text[..cut]),
@@ -50,7 +50,7 @@ fn clipped(text: &str) -> String {
     }
 }
 
-/// An error in a model file. It is shown with its place in the file, the line, and a correction.
+/// An error in a model file. The error is shown with its place in the file, the line, and a correction.
 #[derive(Clone, Debug, Error)]
 #[error("{}", .0.rendered)]
 pub struct ModelError(Box<Details>);

@@ -28,7 +28,7 @@ pub enum ErrorKind {
         /// A correction.
         help: &'static str,
     },
-    /// The same key is given twice in one table.
+    /// The same key is given twice in the same table.
     #[error("`{key}` is given twice")]
     DuplicateKey {
         /// The key as written.
@@ -41,7 +41,7 @@ pub enum ErrorKind {
         what: Spent,
         /// The stage of the work.
         stage: &'static str,
-        /// The number of expressions made.
+        /// The number of expressions created so far.
         nodes: usize,
     },
     /// The file is empty.
@@ -92,7 +92,7 @@ pub enum ErrorKind {
     WrongLength {
         /// A phrase that says what the list should contain.
         expected: &'static str,
-        /// The number of elements it has.
+        /// The number of elements that the list has.
         found: usize,
         /// How the entry could be written.
         example: &'static str,
@@ -102,7 +102,7 @@ pub enum ErrorKind {
     Missing {
         /// Its key.
         key: &'static str,
-        /// How it could be written.
+        /// How the missing entry could be written.
         example: &'static str,
     },
     /// An entry that has no effect by itself.
@@ -110,7 +110,7 @@ pub enum ErrorKind {
     NoEffect {
         /// Its key.
         key: String,
-        /// The entry that it needs.
+        /// The entry that is needed as well.
         without: &'static str,
         /// How that entry could be written.
         example: &'static str,
@@ -120,7 +120,7 @@ pub enum ErrorKind {
     OfOtherJoints {
         /// Its key.
         key: String,
-        /// What could be written instead, or with it.
+        /// What could be written instead of the entry, or in addition to it.
         example: &'static str,
     },
     /// A name that is not that of a body with a joint.
@@ -131,7 +131,7 @@ pub enum ErrorKind {
         /// The existing bodies.
         known: Vec<String>,
     },
-    /// Bodies attached to each other in a circle.
+    /// Bodies attached to one another in a circle.
     #[error("no body of these hangs on the world: {}", hanging(bodies))]
     CircularParents {
         /// The bodies, each attached to the next and the last to the first.
@@ -160,7 +160,7 @@ pub enum ErrorKind {
         first: &'static str,
         /// The other.
         second: &'static str,
-        /// A hint that says when to use which of them.
+        /// A hint that says when to use each of them.
         help: &'static str,
     },
     /// A key that should be a name but is not.
@@ -181,14 +181,14 @@ pub enum ErrorKind {
         /// The name.
         name: String,
     },
-    /// One name given to two things.
+    /// A name given to two things.
     #[error("`{name}` is already the name of {first} (line {line})")]
     NameTaken {
         /// The name.
         name: String,
-        /// What was first given this name.
+        /// What this name was given to first.
         first: Role,
-        /// The line of the first of them.
+        /// The line on which the first of the two is declared.
         line: usize,
     },
     /// A key of `brackets` that is not a pair.
@@ -278,7 +278,7 @@ pub enum Role {
     Output,
     /// A constant of `[hamilton_jacobi]`.
     Constant,
-    /// A component of a point, of `[points.NAME]` or of `[loops.NAME]`.
+    /// A component of a point from `[points.NAME]` or `[loops.NAME]`.
     Point,
     /// An entry of `[constraints]`.
     Constraint,

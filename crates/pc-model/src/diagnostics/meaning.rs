@@ -4,7 +4,7 @@ use pc_mech::acts_as_zero;
 
 use crate::diagnostics::words::{against, at, listed, rounded, undetermined_text};
 
-/// An error in the meaning of a model; quasi-velocities stand for their operators.
+/// An error in the meaning of a model; operators are denoted by their quasi-velocities.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeaningError {
@@ -43,7 +43,7 @@ pub enum MeaningError {
     NotReset {
         /// The name.
         name: String,
-        /// A phrase for what it is.
+        /// A phrase that says what the thing is.
         what: &'static str,
         /// The names that can be reset.
         known: Vec<String>,
@@ -91,7 +91,7 @@ pub enum MeaningError {
     NotNonlinear {
         /// Its name.
         constraint: String,
-        /// A phrase that says what it is instead.
+        /// A phrase that says what the constraint is instead.
         what: &'static str,
     },
     /// A reaction force or torque on a body that virtual work does not determine.
@@ -114,7 +114,8 @@ pub enum MeaningError {
         /// Its name.
         name: String,
     },
-    /// A quasi-velocity, requested in addition to the text, that is not a linear form in the velocities.
+    /// A quasi-velocity that was requested in addition to the text but is not a linear form in the
+    /// velocities.
     #[error("`{text}` is not linear in the velocities")]
     NotLinear {
         /// The definition as written.
@@ -128,7 +129,7 @@ pub enum MeaningError {
         /// The forms that exist for it.
         help: &'static str,
     },
-    /// A coordinate without kinematics, although other coordinates have them.
+    /// A coordinate without kinematics, although other coordinates have kinematics.
     #[error("[kinematics] does not say what `{coordinate}'` is")]
     KinematicsMissing {
         /// The coordinate.
@@ -179,7 +180,7 @@ pub enum MeaningError {
         coordinate: String,
         /// The velocity given.
         given: f64,
-        /// Its value as determined by the others.
+        /// The value that the quasi-velocities determine.
         found: f64,
     },
     /// Components of the start that are to stay fixed but would have to move to satisfy a constraint.
@@ -203,7 +204,7 @@ pub enum MeaningError {
     /// A start that does not satisfy a constraint.
     #[error("the start is off the constraint `{constraint}`: {what} {}, not 0", rounded(*residual))]
     OffConstraint {
-        /// `it is` or `its rate is`.
+        /// The words `it is` or `its rate is`.
         what: &'static str,
         /// Its name.
         constraint: String,
@@ -252,7 +253,7 @@ pub enum MeaningError {
         /// The value as written.
         text: String,
     },
-    /// Two brackets of the same pair, in opposite orders, that are not opposite to each other.
+    /// Two brackets of the same pair, in opposite orders, that do not have opposite values.
     #[error("the brackets \"{left},{right}\" and \"{right},{left}\" are not opposite")]
     BracketsNotSkew {
         /// The first name in the later bracket.
@@ -292,7 +293,7 @@ pub enum MeaningError {
         acts_as_zero(combination, |s| names[s - 1].clone())
     )]
     Undetermined {
-        /// The combination: the numbers of the quasi-velocities, counted from 1, with their coefficients.
+        /// The combination: the number of each quasi-velocity in it, counted from 1, with its coefficient.
         combination: Vec<(usize, String)>,
         /// The names of all quasi-velocities.
         names: Vec<String>,
@@ -427,7 +428,7 @@ pub enum MeaningError {
     /// The rate d() of an input, an acceleration or a reaction.
     #[error("the rate of the {what} `{name}` is not known")]
     UnknownRate {
-        /// Which of these it is.
+        /// `input`, `acceleration` or `reaction`.
         what: &'static str,
         /// Its name.
         name: String,
@@ -471,7 +472,7 @@ pub enum MeaningError {
     NotAnIntegral {
         /// The integral.
         name: String,
-        /// The time at which it was found to change.
+        /// The time at which the function was found to change.
         t: f64,
         /// Its rate of change.
         rate: f64,

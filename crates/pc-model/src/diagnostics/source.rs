@@ -24,7 +24,7 @@ pub struct Position {
 /// kinetic`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place {
-    /// Section and entry; empty if there is none.
+    /// The section and the entry; empty if there is neither.
     pub entry: String,
     /// Bytes in the file.
     pub span: Range<usize>,
@@ -69,7 +69,7 @@ impl Source {
         self.text.get(span).unwrap_or_default()
     }
 
-    /// Line and column of a byte offset; an offset past the end counts as the end.
+    /// The line and column of a byte offset; an offset past the end counts as the end.
     pub fn position(&self, offset: usize) -> Position {
         let offset = self.text.floor_char_boundary(offset);
         let before = &self.text[..offset];

@@ -1,4 +1,4 @@
-//! Parts of which messages are made.
+//! Phrases from which messages are built.
 
 use pc_expr::parse::nearest;
 use pc_expr::readable;

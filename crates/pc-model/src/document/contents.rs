@@ -18,7 +18,8 @@ pub struct Document {
     pub source: Source,
     /// `[model]`
     pub model: Heading,
-    /// `[parameters]`, which stay adjustable, each with its number or an expression in the preceding ones.
+    /// `[parameters]`, which stay adjustable, each with its number or an expression in the preceding
+    /// parameters.
     pub parameters: Vec<NamedExpression>,
     /// `[inputs]`
     pub inputs: Vec<Input>,
@@ -40,7 +41,7 @@ pub struct Document {
     pub algebra: Option<Algebra>,
     /// `[constraints]`, then the constraints that close `[loops.NAME]`.
     pub constraints: Vec<Constraint>,
-    /// `[lagrangian]`; it is always given if there are no bodies.
+    /// `[lagrangian]`, which is always given if there are no bodies.
     pub lagrangian: Option<Lagrangian>,
     /// `[bodies.NAME]` with a position.
     pub bodies: Vec<Body>,
@@ -77,7 +78,7 @@ pub struct Heading {
     pub reference: Option<Located<String>>,
 }
 
-/// A value that the system is given by a program or a table.
+/// A value that a program or a table supplies to the system.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
     /// Its name.
@@ -89,7 +90,7 @@ pub struct Input {
 /// The value of an input.
 #[derive(Clone, Debug, PartialEq)]
 pub enum InputValue {
-    /// A number, or an expression in parameters: constant until it is set.
+    /// A number, or an expression in parameters: the input is constant until it is set.
     Constant(Expression),
     /// A list of times and the values at these times.
     Lists {
@@ -113,7 +114,7 @@ pub struct TableFile {
     pub file: Located<String>,
     /// The column of the values.
     pub column: Located<String>,
-    /// The column of the times; if left out, the column `t` or else the first one.
+    /// The column of the times; if left out, the column `t`, or else the first column.
     pub time: Option<Located<String>>,
     /// The interpolation between the times.
     pub interpolation: Interpolation,
@@ -155,7 +156,7 @@ pub struct Algebra {
 pub enum AlgebraDefinition {
     /// By its name in the catalogue.
     Catalogue(Located<String>),
-    /// By its brackets; pairs left out are zero.
+    /// By its brackets; pairs that are left out have the bracket 0.
     Brackets(Vec<Bracket>),
 }
 
@@ -174,7 +175,7 @@ pub struct Bracket {
 /// A constraint: an expression that is required to stay zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Constraint {
-    /// Its label, outside the namespace of the model.
+    /// Its label, which lies outside the namespace of the model.
     pub name: Name,
     /// The expression that stays zero.
     pub expression: Expression,
@@ -201,7 +202,7 @@ pub struct Lagrangian {
     pub place: Place,
     /// Kinetic energy.
     pub kinetic: Option<Expression>,
-    /// Potential energy; 0 if it is left out.
+    /// The potential energy; 0 if left out.
     pub potential: Option<Expression>,
     /// The Lagrangian itself.
     pub lagrangian: Option<Expression>,
@@ -212,7 +213,7 @@ pub struct Lagrangian {
 /// A rigid body or mass point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// Its label, outside the namespace of the model.
+    /// Its label, which lies outside the namespace of the model.
     pub name: Name,
     /// The section's header.
     pub place: Place,
@@ -260,13 +261,13 @@ pub struct HamiltonJacobi {
 /// An event, which occurs where an expression passes through zero.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// Its label, outside the namespace of the model.
+    /// Its label, which lies outside the namespace of the model.
     pub name: Name,
     /// The section's header.
     pub place: Place,
     /// The expression that passes through zero.
     pub when: Expression,
-    /// The direction in which it passes through zero.
+    /// The direction in which the expression passes through zero.
     pub direction: Option<Located<Direction>>,
     /// Whether the run ends there.
     pub terminal: Option<Located<bool>>,

@@ -26,16 +26,16 @@ pub enum DrawnShape {
         /// Its position.
         at: DrawnPlace,
     },
-    /// A broken line.
+    /// A polyline.
     Line {
-        /// Its corners, two or more.
+        /// Its corners, of which there are two or more.
         through: Vec<DrawnPlace>,
     },
     /// A disc.
     Disc {
         /// Its centre.
         at: DrawnPlace,
-        /// A vector perpendicular to it.
+        /// A vector perpendicular to the disc.
         normal: Option<DrawnPlace>,
         /// Its radius.
         radius: Expression,
@@ -51,9 +51,9 @@ pub enum DrawnShape {
     Box {
         /// Its centre.
         at: DrawnPlace,
-        /// The lengths of its edges.
+        /// The lengths of the box's edges.
         size: DrawnPlace,
-        /// The rows of the rotation matrix R from its axes to the fixed axes.
+        /// The rows of the rotation matrix R from the box's axes to the fixed axes.
         rotation: Option<Box<[Expression; 9]>>,
     },
     /// A spring.
@@ -70,7 +70,7 @@ pub enum DrawnShape {
     },
     /// Words.
     Text {
-        /// The position where they begin.
+        /// The position where the words begin.
         at: DrawnPlace,
         /// The words.
         text: Located<String>,
@@ -145,7 +145,7 @@ fn entry(item: &Item<'_>) -> Result<Draw, ModelError> {
     Ok(Draw { place: table.place.clone(), shape })
 }
 
-/// The numbers of corners that a line may have.
+/// The numbers of corners that a polyline may have.
 const LINES: &[usize] = &{
     let mut lengths = [0; 63];
     let mut i = 0;

@@ -40,7 +40,7 @@ fn check_body(document: &Document, body: &Located<String>) -> Result<(), ModelEr
     Err(document.source.error(&body.place, kind))
 }
 
-/// Checks that each body is attached to an existing one, and that every body is ultimately attached to the
+/// Checks that each body is attached to an existing body, and that every body is ultimately attached to the
 /// world.
 fn check_parents(document: &Document) -> Result<(), ModelError> {
     for parent in document.tree.iter().filter_map(|body| body.parent.as_ref()) {

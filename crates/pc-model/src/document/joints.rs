@@ -1,4 +1,4 @@
-//! Bodies attached to others by joints, as written.
+//! Bodies attached to other bodies by joints, as written.
 
 use crate::diagnostics::source::Place;
 use crate::document::expression::{Expression, Located, Name};
@@ -10,7 +10,7 @@ pub const WORLD: &str = "world";
 /// A body attached to another, or to the world, by a joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TreeBody {
-    /// Its label, outside the namespace of the model.
+    /// Its label, which lies outside the namespace of the model.
     pub name: Name,
     /// The section's header.
     pub place: Place,
@@ -40,7 +40,7 @@ impl TreeBody {
 /// A joint: how a body moves relative to the one to which it is attached.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
-    /// Its place in the file.
+    /// The joint's place in the file.
     pub place: Place,
     /// Its kind.
     pub kind: JointKind,
@@ -48,11 +48,11 @@ pub struct Joint {
     pub axes: Vec<[f64; 3]>,
     /// The advance of a screw joint per radian.
     pub pitch: Option<Expression>,
-    /// Its position in the axes of the body to which its body is attached, relative to that body's origin;
-    /// the origin if left out.
+    /// The position of the joint relative to the origin of the body that carries it, in the axes of that
+    /// body; the origin if left out.
     pub at: Option<[Expression; 3]>,
-    /// The rotation from the joint's axes to those of the body to which its body is attached; none if they
-    /// are parallel.
+    /// The rotation from the joint's axes to those of the body that carries it; `None` if the axes are
+    /// parallel.
     pub rotation: Option<JointRotation>,
     /// The names of its coordinates.
     pub coordinates: Vec<Name>,
@@ -82,13 +82,13 @@ pub enum JointKind {
     Revolute,
     /// A translation along an axis.
     Prismatic,
-    /// A rotation about an axis with an advance along it.
+    /// A rotation about an axis with an advance along the same axis.
     Screw,
-    /// A translation along an axis and a rotation about it.
+    /// A translation along an axis and a rotation about the same axis.
     Cylindrical,
     /// Rotations about an axis of one body and an axis of the other.
     Universal,
-    /// Translations perpendicular to a normal and a rotation about it.
+    /// Translations perpendicular to a normal and a rotation about the normal.
     Planar,
     /// All rotations.
     Spherical,
@@ -138,7 +138,7 @@ impl JointKind {
         ends.iter().map(|end| format!("{name}{end}")).collect()
     }
 
-    /// The names of the quasi-velocities of a joint called `name` whose coordinates have these names.
+    /// The names of the quasi-velocities of a joint called `name` whose coordinates are called `coordinates`.
     pub(crate) fn quasi_velocities(self, name: &str, coordinates: &[String]) -> Vec<String> {
         let ends: &[&str] = match self {
             JointKind::Spherical => &["_ω1", "_ω2", "_ω3"],
@@ -148,7 +148,8 @@ impl JointKind {
         ends.iter().map(|end| format!("{name}{end}")).collect()
     }
 
-    /// The index of the first component of its quaternion among its coordinates, if it has one.
+    /// The index, among the joint's coordinates, of the first component of its quaternion, if it has a
+    /// quaternion.
     pub fn quaternion(self) -> Option<usize> {
         match self {
             JointKind::Spherical => Some(0),
@@ -168,7 +169,7 @@ impl JointKind {
 pub enum JointRotation {
     /// The rows of the matrix.
     Matrix(Box<[Expression; 9]>),
-    /// Successive rotations about axes 0 to 2, each about an axis as rotated by the preceding ones.
+    /// Successive rotations about axes 0 to 2, each about an axis as turned by the preceding rotations.
     Turns(Vec<(usize, Expression)>),
 }
 

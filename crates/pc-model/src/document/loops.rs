@@ -118,7 +118,7 @@ fn apart(name: &str) -> Vec<String> {
     ["x", "y", "z"].iter().map(|i| format!("{name}_a_{i} - {name}_b_{i}")).collect()
 }
 
-/// The scalar product of a direction of the first body and one of the second.
+/// The scalar product of a direction of the first body and a direction of the second.
 fn scalar_product(name: &str, a: [f64; 3], b: [f64; 3]) -> String {
     let along = |end: &str, u: &[f64; 3], i: usize| {
         let terms = (0..3).filter(|&j| u[j] != 0.0).map(|j| {

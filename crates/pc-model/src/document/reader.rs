@@ -266,7 +266,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    /// The value as one of a few words.
+    /// The value, which must be one of the words in `choices`.
     pub(super) fn choice<T: Copy>(&self, choices: &[(&'static str, T)]) -> Result<Located<T>, ModelError> {
         let text = self.text()?.value;
         if let Some((_, value)) = choices.iter().find(|(word, _)| *word == text) {
@@ -340,7 +340,7 @@ impl<'a> Item<'a> {
         Ok(Expression { text: raw.into(), ast, entry, map: TextMap::new(raw, start, raw) })
     }
 
-    /// The value as a list of one of the given lengths.
+    /// The value as a list that has one of the given lengths.
     pub(super) fn list(
         &self,
         lengths: &[usize],
@@ -362,7 +362,7 @@ impl<'a> Item<'a> {
         self.elements(array).map(|element| element.expression()).collect()
     }
 
-    /// The value as a list of one of the given lengths, with elements of any type.
+    /// The value as a list that has one of the given lengths and elements of any type.
     pub(super) fn parts(
         &self,
         lengths: &[usize],

@@ -11,7 +11,7 @@ pub const MOST_BYTES: u64 = 64 << 20;
 /// The whole contents of a model or a table of an input.
 ///
 /// # Errors
-/// [`ErrorKind::FileTooLarge`] if there are more than [`MOST_BYTES`] bytes; any error of the reader.
+/// [`ErrorKind::FileTooLarge`] if there are more than [`MOST_BYTES`] bytes; any error from the reader.
 pub fn read_bounded(from: impl Read) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     from.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;

@@ -16,22 +16,22 @@ pub struct Simulation {
     pub t_start: Option<Located<f64>>,
     /// End time.
     pub t_end: Option<Located<f64>>,
-    /// Number of rows, at least 2 (start and end).
+    /// The number of rows; at least 2 (start and end).
     pub samples: Option<Located<usize>>,
-    /// Relative tolerance, positive.
+    /// The relative tolerance; positive.
     pub rtol: Option<Located<f64>>,
-    /// Absolute tolerances, positive.
+    /// The absolute tolerances; positive.
     pub atol: Option<Located<AbsoluteTolerance>>,
-    /// Largest length of a step, positive.
+    /// The largest length of a step; positive.
     pub max_step: Option<Located<f64>>,
-    /// The number of parts of each step that are searched for events, at least 1.
+    /// The number of parts into which each step is divided in the search for events; at least 1.
     pub samples_per_step: Option<Located<u32>>,
-    /// The fraction of the first interval between events to which the time remaining until their accumulation
-    /// must shrink before they count as accumulated; at least 0 and less than 1.
+    /// Events count as accumulated once the time remaining until they accumulate has shrunk to this fraction
+    /// of the first interval between them; at least 0 and less than 1.
     pub accumulation: Option<Located<f64>>,
     /// Integration method.
     pub method: Option<Located<Method>>,
-    /// Form of the equations.
+    /// The form of the equations.
     pub form: Option<Located<Variables>>,
     /// The quasi-velocities of the form `hamel`, as linear forms in the velocities.
     pub hamel: Vec<NamedExpression>,

@@ -5,6 +5,6 @@
 /// [`Document::parse`](crate::Document::parse), but the schema does not check names, expressions or
 /// conditions between sections.
 ///
-/// It is written by hand; the tests compare each of its entries and choices with those that the reader
-/// accepts.
+/// The schema is written by hand; the tests compare each of its entries and choices with those that the
+/// reader accepts.
 pub const SCHEMA: &str = include_str!("../../model.schema.json");

@@ -11,7 +11,7 @@ use crate::document::run_settings::Simulation;
 use crate::document::tolerance::AbsoluteTolerance;
 use crate::variables::Variables;
 
-/// The largest number of rows in a table: each is held in memory.
+/// The largest number of rows in a table: all rows are held in memory.
 pub const MOST_SAMPLES: usize = 10_000_000;
 
 /// The largest number of points in one step at which events are looked for.

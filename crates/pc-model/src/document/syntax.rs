@@ -64,7 +64,7 @@ fn help(source: &Source, message: &str, span: &Range<usize>) -> &'static str {
     }
 }
 
-/// Whether a value is a number written with a comma, as a decimal mark or between thousands.
+/// Whether a value is a number written with a comma, used as a decimal mark or between thousands.
 fn is_decimal_comma(value: &str) -> bool {
     let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
     let value = value.split('#').next().unwrap_or_default().trim();

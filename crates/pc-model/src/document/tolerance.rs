@@ -1,4 +1,4 @@
-//! Absolute tolerances as they are given.
+//! Absolute tolerances, as the text gives them.
 
 /// Absolute tolerances as they are given: one for all components of the state, one for some of them, or both.
 #[derive(Clone, Debug, Default, PartialEq)]

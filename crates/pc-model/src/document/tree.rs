@@ -18,7 +18,7 @@ const AXES: &str = "axes = [[1, 0, 0], [0, 1, 0]]";
 const AT: &str = "at = [0, 0, 0]";
 const TURNS: &str = "turns = [[\"z\", \"pi/2\"], [\"x\", \"a\"]]";
 
-/// A few rounding errors of a number near 1.
+/// A few times the rounding error of a number near 1.
 pub(crate) const ROUNDING: f64 = 1e-15;
 
 /// The bodies with a position, and those with a joint.

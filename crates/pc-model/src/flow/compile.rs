@@ -16,11 +16,11 @@ use crate::model::model::Model;
 const PROGRAM: &str = "the program of the equations";
 
 impl Model {
-    /// Compiles the motion of this model and evaluates it at the start, which is returned with it: (x, η) with the
-    /// free quasi-velocities if constraints make the others vanish, otherwise with all of them.
+    /// Compiles the motion of this model and evaluates it at the start, which is returned with the motion: (x, η)
+    /// with the free quasi-velocities if constraints make the others vanish, otherwise with all quasi-velocities.
     ///
     /// # Errors
-    /// [`ModelError`] if the motion cannot be evaluated there.
+    /// [`ModelError`] if the motion cannot be evaluated at the start.
     pub fn compile(&self, assembly: &Assembly<'_>) -> Result<(Motion, Vec<f64>), ModelError> {
         self.document().stage(assembly.system.graph(), PROGRAM, || self.compile_formulation(assembly))
     }
@@ -37,10 +37,10 @@ impl Model {
     }
 
     /// Compiles the equations with multipliers and evaluates them at the start (x, η, z), which contains all
-    /// η and is returned with them.
+    /// η and is returned with the motion.
     ///
     /// # Errors
-    /// [`ModelError`] if they cannot be evaluated there.
+    /// [`ModelError`] if the equations cannot be evaluated at the start.
     pub(crate) fn compile_multipliers(
         &self,
         multipliers: &Multipliers<'_>,
@@ -61,10 +61,10 @@ impl Model {
     }
 
     /// Compiles equations of motion of this model in any independent quasi-velocities, and evaluates them at the start
-    /// (x, η, z), which is returned with them.
+    /// (x, η, z), which is returned with the motion.
     ///
     /// # Errors
-    /// [`ModelError`] if they cannot be evaluated there.
+    /// [`ModelError`] if the equations cannot be evaluated at the start.
     pub fn compile_equations(
         &self,
         equations: &Equations<'_>,
@@ -78,7 +78,7 @@ impl Model {
     /// Compiles canonical equations of this model and evaluates them at the start (x, y).
     ///
     /// # Errors
-    /// [`ModelError`] if they cannot be evaluated there.
+    /// [`ModelError`] if the equations cannot be evaluated at the start.
     pub fn compile_canonical(
         &self,
         equations: &Canonical<'_>,
@@ -96,7 +96,7 @@ impl Model {
     /// y).
     ///
     /// # Errors
-    /// [`ModelError`] if they cannot be evaluated there.
+    /// [`ModelError`] if the equations cannot be evaluated at the start.
     pub fn compile_in_momenta(
         &self,
         multipliers: &Multipliers<'_>,
@@ -128,7 +128,7 @@ impl Model {
     }
 
     /// The compiled motion, if it can be evaluated at the start, with projection onto the integrals to be
-    /// kept. These have to be integrals whatever the external forces.
+    /// kept. The kept functions have to be integrals whatever the external forces are.
     fn started(
         &self,
         compiled: Result<Motion, MechError>,

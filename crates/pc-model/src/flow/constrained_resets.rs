@@ -3,8 +3,8 @@
 use pc_expr::{Failure, VectorField};
 use pc_mech::{Motion, Multipliers};
 
-/// If constraints change a value set by a reset by more than this, absolute or relative, whichever is larger,
-/// the change is more than rounding error.
+/// Constraints may change a value that a reset has set by at most this, absolute or relative, whichever is
+/// larger; a greater change is more than rounding error.
 const OFF: f64 = 1e-8;
 /// The factor by which a reset may increase the distance of a state from the constraints.
 const LENGTHENED: f64 = 10.0;
@@ -14,7 +14,7 @@ const LENGTHENED: f64 = 10.0;
 pub(super) struct ConstrainedResets {
     /// The motion under constraints, in all quasi-velocities.
     motion: Motion,
-    /// The quasi-velocities that determine the others and that keep their values.
+    /// The quasi-velocities that determine the others and keep their values.
     determining: Vec<usize>,
     /// The number of velocities that the constraints leave free.
     free: usize,
@@ -30,7 +30,7 @@ struct OffConstraints {
 }
 
 impl ConstrainedResets {
-    /// The resets of `motion` under these constraints; its first `declared` quasi-velocities are those of the text.
+    /// The resets of `motion` under these constraints; the first `declared` quasi-velocities are those of the text.
     pub(super) fn new(motion: &Motion, multipliers: &Multipliers<'_>, declared: usize) -> ConstrainedResets {
         let all = multipliers.coefficients().columns();
         let free = all - multipliers.constraints().len();
@@ -45,15 +45,15 @@ impl ConstrainedResets {
     }
 
     /// Moves a state (x, η, z) onto the constraints after a reset has set the components `places`; `before` is the
-    /// state before it.
+    /// state before the reset.
     ///
-    /// Velocities that are set stay as they are, and the others are adjusted. If more are set than the constraints
-    /// leave free, all velocities move to the nearest allowed values. Coordinates stay: the state is at the event,
-    /// and rounding errors must not move it back.
+    /// Velocities that were set stay as they are, and the others are adjusted. If more velocities are set than
+    /// the constraints leave free, all velocities move to the nearest allowed values. Coordinates keep their
+    /// values: the state is at the event, and rounding errors must not move it back.
     ///
     /// # Errors
-    /// A [`Failure`] if a coordinate, or a velocity that should stay, would have to move; or if no state on the
-    /// constraints is found.
+    /// A [`Failure`] if a coordinate, or a velocity that should stay, would have to change, or if no state on
+    /// the constraints is found.
     pub(super) fn settle(
         &mut self,
         t: f64,

@@ -21,8 +21,8 @@ impl<'g> Assembly<'g> {
         })
     }
 
-    /// The equations M η̇ = r in the quasi-velocities of the state, or those of its momenta, without the reactions
-    /// of multipliers.
+    /// The equations M η̇ = r, without the reactions of multipliers, in the quasi-velocities of the state or those
+    /// to which its momenta belong.
     ///
     /// # Errors
     /// [`ModelError`] at the constraint under which there are no independent velocities.
@@ -34,8 +34,8 @@ impl<'g> Assembly<'g> {
         }
     }
 
-    /// The canonical equations in the momenta of the [system](Assembly::system_in) in these variables. If the η
-    /// have no closed formula, they are solved for numerically, beginning with their values at the start.
+    /// The canonical equations in the momenta of the [system](Assembly::system_in) for these variables. If the
+    /// η have no closed formula, they are solved for numerically, beginning with their values at the start.
     ///
     /// # Errors
     /// [`ModelError`] if there are no canonical equations.
@@ -53,7 +53,8 @@ impl<'g> Assembly<'g> {
     }
 
     /// The conversion between the quasi-velocities of the state and its momenta; if multipliers enforce the
-    /// constraints and momenta are integrated, it gives quasi-velocities that satisfy the constraints.
+    /// constraints and momenta are integrated, the conversion gives quasi-velocities that satisfy the
+    /// constraints.
     ///
     /// # Errors
     /// [`ModelError`] if there is no such conversion.

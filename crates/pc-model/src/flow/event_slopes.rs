@@ -8,8 +8,8 @@ use crate::diagnostics::error::ModelError;
 use crate::flow::reading::inputs;
 use crate::model::model::Model;
 
-/// For each event, the derivatives of its function and of the values that its reset writes with respect to
-/// (t, y, p), where y = (x, η, z) with the free η; the other η are functions of these.
+/// For each event, the derivatives with respect to (t, y, p) of its function and of the values that its reset
+/// writes, where y = (x, η, z) with the free η; the other η are functions of the free ones.
 #[derive(Clone, Debug)]
 pub(super) struct EventSlopes {
     dim: usize,
@@ -34,7 +34,7 @@ pub(super) struct Slopes<'a> {
     compiled: &'a Compiled,
 }
 
-/// The derivatives of one function with respect to (t, y, p).
+/// The derivatives of a single function with respect to (t, y, p).
 #[derive(Clone, Copy)]
 pub(super) struct Row<'a> {
     dim: usize,

@@ -1,4 +1,4 @@
-//! The events of a model, evaluated on the states that are integrated, whatever the form of the equations.
+//! The events of a model, evaluated on the states that are integrated, for any form of the equations.
 
 use std::sync::Arc;
 
@@ -55,7 +55,7 @@ impl FlowEvents {
     /// quasi-velocities if there are multipliers.
     ///
     /// # Errors
-    /// [`ModelError`] if they cannot be compiled.
+    /// [`ModelError`] if the events cannot be compiled.
     pub(super) fn new(
         model: &Model,
         assembly: &Assembly<'_>,
@@ -98,7 +98,7 @@ impl FlowEvents {
     /// Gives all parameters new values, in the order of declaration.
     ///
     /// # Panics
-    /// If the number of values is not that of the parameters.
+    /// Panics if the number of values is not that of the parameters.
     pub fn set_parameters(&mut self, parameters: &[f64]) {
         self.reading.set_parameters(parameters);
         if let Some(constraints) = &mut self.constraints {
@@ -106,8 +106,8 @@ impl FlowEvents {
         }
     }
 
-    /// Computes ∂g/∂pⱼ and, in `reset`, ∂R/∂pⱼ by central difference quotients, accurate to ten digits: for
-    /// momenta, and for velocities that constraints determine.
+    /// Computes ∂g/∂pⱼ and, in `reset`, ∂R/∂pⱼ by central difference quotients, accurate to ten digits. This
+    /// is used for momenta, and for velocities that constraints determine.
     fn quotient_by_parameter(
         &mut self,
         event: usize,
@@ -220,7 +220,7 @@ impl Events for FlowEvents {
         }
     }
 
-    /// False if inputs have tables, since the rates of these are not expressions.
+    /// False if inputs have tables, since the rates of tables are not expressions.
     fn has_derivatives(&self) -> bool {
         self.slopes.is_some() && self.tables.is_empty()
     }

@@ -19,7 +19,7 @@ pub struct Flow {
     pub motion: Motion,
     /// Its state at the start.
     pub start: Vec<f64>,
-    /// The names of the coordinates of the form, of the declared quasi-velocities whatever the form, and of the
+    /// The names of the coordinates of the form, of the declared quasi-velocities (for any form), and of the
     /// first-order states.
     pub names: Vec<String>,
     /// The events; none in most models.
@@ -71,7 +71,8 @@ impl Flow {
         }
     }
 
-    /// The flow of a motion whose state contains the quasi-velocities of a form, or their momenta.
+    /// The flow of a motion whose state contains the quasi-velocities of a form, or the momenta that belong
+    /// to them.
     fn of<'g>(
         model: &Model,
         assembly: &Assembly<'g>,
@@ -125,7 +126,7 @@ impl Flow {
         flow
     }
 
-    /// Gives the first parameters these values, in the motion, the events and the rows.
+    /// Gives the first parameters these values, which the motion, the events and the rows then use.
     pub fn set_parameters(&mut self, parameters: &[f64]) {
         self.motion.parameters_mut()[..parameters.len()].copy_from_slice(parameters);
         self.events.set_parameters(parameters);
@@ -176,8 +177,8 @@ impl Flow {
         row
     }
 
-    /// The rates of all quasi-velocities of the system when the state changes at these rates; none if the
-    /// state itself contains quasi-velocities of the system, since `rates` then contains their rates.
+    /// The rates of all quasi-velocities of the system when the state changes at these `rates`; `None` if the
+    /// state itself contains quasi-velocities of the system, since their rates are then in `rates`.
     pub fn rates_of_quasi_velocities(&mut self, t: f64, state: &[f64], rates: &[f64]) -> Option<Vec<f64>> {
         self.reading.rates(t, state, rates)
     }
@@ -191,14 +192,14 @@ impl Flow {
         self.reading.write(t, all)
     }
 
-    /// The indices, among all quasi-velocities of the system, of the free ones: those in the state, or those of its
-    /// momenta.
+    /// The indices, among all quasi-velocities of the system, of the free ones: those in the state, or those to
+    /// which its momenta belong.
     pub fn free_quasi_velocities(&self) -> &[usize] {
         &self.reading.free
     }
 
-    /// Whether the quasi-velocities of the state, or those of its momenta, are quasi-velocities of the
-    /// system.
+    /// Whether the quasi-velocities of the state, or those to which its momenta belong, are quasi-velocities
+    /// of the system.
     pub fn has_own_variables(&self) -> bool {
         !self.reading.is_changed()
     }

@@ -1,4 +1,4 @@
-//! Values that the text gives as formulas in parameters: other parameters, and the start.
+//! Values that the text gives as formulas in parameters: those of other parameters, and of the start.
 
 use pc_expr::SymbolPlaces;
 use pc_mech::Expr;
@@ -12,11 +12,12 @@ use crate::names::scope::{Scope, entry};
 use crate::names::stage::Stage;
 
 impl<'g> Assembly<'g> {
-    /// The parameters given by expressions in others: the index of each, with its value as a function of the
-    /// parameters that are numbers. `model` is the one assembled here.
+    /// The parameters given by expressions in other parameters: the index of each, with its value as a
+    /// function of the parameters that are numbers. `model` is the model from which this assembly was made.
     ///
     /// # Errors
-    /// [`ModelError`] for an expression without a meaning; a model with one could not have been assembled.
+    /// [`ModelError`] for an expression without a meaning; a model with such an expression could not have
+    /// been assembled.
     pub fn parameter_formulas(&self, model: &Model) -> Result<Vec<(usize, Expr<'g>)>, ModelError> {
         let (graph, document) = (self.system.graph(), model.document());
         let mut scope = Scope::new(graph, document);
@@ -33,8 +34,8 @@ impl<'g> Assembly<'g> {
     }
 
     /// The start of a form in its coordinates, quasi-velocities and first-order states. Values are functions
-    /// of parameters if the text gives them as such; they are numbers if the text gives numbers, if they were
-    /// determined from velocities, or if they were moved onto constraints.
+    /// of parameters if the text gives them as such; they are numbers if the text gives numbers, if the
+    /// values were determined from velocities, or if they were moved onto constraints.
     ///
     /// # Errors
     /// As for [`parameter_formulas`](Assembly::parameter_formulas).

@@ -8,8 +8,8 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::variables::Variables;
 
-/// A definition of a quasi-velocity counts as dependent on the preceding ones if no more than this fraction
-/// of it is independent of them.
+/// A definition of a quasi-velocity counts as dependent on the preceding definitions if no more than this
+/// fraction of it is independent of them.
 const DEPENDENT: f64 = 1e-6;
 
 /// A system whose equations (9) are the equations of motion, with the relation between its quasi-velocities and those
@@ -25,7 +25,7 @@ pub struct FreeForm<'g> {
     pub values: Vec<Expr<'g>>,
     /// The quasi-velocities of the system as functions of time, coordinates and the independent ones.
     pub definitions: Vec<Expr<'g>>,
-    /// The k × k matrix A in η' = A η; none if the quasi-velocities are those of the model.
+    /// The k × k matrix A in η' = A η; `None` if the quasi-velocities are those of the model.
     pub(crate) matrix: Option<Matrix<Expr<'g>>>,
 }
 
@@ -60,7 +60,7 @@ impl<'g> FreeForm<'g> {
 
 impl<'g> Assembly<'g> {
     /// The system in independent quasi-velocities, with the coordinates and quasi-velocities of these variables;
-    /// for momenta, the quasi-velocities are those to which they belong.
+    /// for momenta, the quasi-velocities are those to which the momenta belong.
     ///
     /// # Errors
     /// [`ModelError`] if there is no such form.
@@ -126,7 +126,8 @@ impl<'g> Assembly<'g> {
         Err(self.no_form(message.to_owned(), "use another form: poincare, canonical, or hamel"))
     }
 
-    /// The form in the quasi-velocities given in addition to the text, completed by those of the model.
+    /// The form in the quasi-velocities given in addition to the text, completed by quasi-velocities of the
+    /// model.
     fn in_given(&self, free: &System<'g>) -> Result<FreeForm<'g>, ModelError> {
         let (graph, eta) = (free.graph(), free.quasi_velocities());
         let help = "give them after the model, as in `pc derive MODEL --form hamel \"v = r*φ'\"`, each independent of those before";
@@ -189,14 +190,14 @@ impl<'g> Assembly<'g> {
     /// The start of a form, in its coordinates, quasi-velocities and first-order states.
     ///
     /// # Errors
-    /// [`ModelError`] if a definition has no value there.
+    /// [`ModelError`] if a definition has no value at the start.
     pub fn start_in(&self, form: &FreeForm<'g>) -> Result<Vec<f64>, ModelError> {
         let eta = self.numbers_at_start(&form.system, &form.definitions)?;
         let states: Vec<Expr<'g>> = form.system.states().iter().map(|&(z, _)| z).collect();
         Ok([self.start_of(form.system.frame().coordinates()), eta, self.start_of(&states)].concat())
     }
 
-    /// Whether the constraints have multipliers, because they do more than make quasi-velocities vanish.
+    /// Whether the constraints have multipliers because they do more than make quasi-velocities vanish.
     pub fn has_multipliers(&self) -> bool {
         matches!(self.constraints.formulation(), ConstraintFormulation::Multipliers(_))
     }
@@ -259,7 +260,7 @@ impl<'g> Assembly<'g> {
     }
 }
 
-/// The columns of the constraint matrix that belong to the dependent quasi-velocities.
+/// The columns of the constraint matrix that belong to dependent quasi-velocities.
 fn dependent_columns<'g>(
     c: &Matrix<Expr<'g>>,
     all: &[Expr<'g>],
@@ -300,8 +301,8 @@ fn in_alike_units(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     rows.iter().map(in_units).collect()
 }
 
-/// The part of a row that is orthogonal to the known rows, which all have length one, and its size relative
-/// to the row.
+/// The part of a row that is orthogonal to the known rows, which all have length one, and the length of this
+/// part relative to that of the row.
 fn rest(known: &[Vec<f64>], row: &[f64]) -> (Vec<f64>, f64) {
     let size = |row: &[f64]| row.iter().fold(0.0f64, |size, entry| size.hypot(*entry));
     let mut rest = row.to_vec();

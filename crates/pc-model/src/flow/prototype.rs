@@ -11,9 +11,9 @@ use crate::model::model::Model;
 use crate::variables::Variables;
 
 /// If projection moves each component of a start by at most this fraction, the start satisfies the constraints up to the
-/// rounding of its digits. The fraction is a tenth of the one at which a model is refused.
+/// rounding of its digits. The fraction is a tenth of the deviation at which a model is refused.
 const ON_CONSTRAINTS: f64 = 1e-9;
-/// A component may also move by this fraction of the largest one: the rounding error of the projection.
+/// A component may also move by this fraction of the largest component: the rounding error of the projection.
 const ROUNDING: f64 = 1e-14;
 
 /// The equations of a model, compiled once for all models that differ from it only in numbers.
@@ -27,7 +27,7 @@ pub struct Prototype {
 }
 
 impl Prototype {
-    /// As for [`of`](Prototype::of); also none if the model has no equations of motion.
+    /// As for [`of`](Prototype::of); also `None` if the model has no equations of motion.
     pub fn new(model: &Model, variables: Variables) -> Option<Prototype> {
         let prototype = |assembly: &Assembly<'_>| {
             Ok(Prototype::of(model, assembly, variables, Flow::new(model, assembly, variables)?))
@@ -35,9 +35,9 @@ impl Prototype {
         model.derived(prototype).unwrap_or_else(|_: ModelError| None)
     }
 
-    /// The prototype of a flow of the model in these variables. None if the equations may depend on the start or on
-    /// the values of the parameters (because momenta are solved for velocities near the start, or redundant
-    /// constraints are left out), or if the start has to be solved for.
+    /// The prototype of a flow of the model in these variables. `None` if the equations may depend on the start or
+    /// on the values of the parameters (because momenta are solved for velocities near the start, or redundant
+    /// constraints are left out), or if the start must be solved for.
     pub fn of(model: &Model, assembly: &Assembly<'_>, variables: Variables, flow: Flow) -> Option<Prototype> {
         let own =
             variables == Variables::QuasiVelocities && !model.projects_start() && !model.derives_start();
@@ -51,7 +51,7 @@ impl Prototype {
         Some(Prototype { flow: Mutex::new(flow), places, vanishing })
     }
 
-    /// The equations with the values of a model that has the same text, at its start at time `t`; none if
+    /// The equations with the values of a model that has the same text, at its start at time `t`; `None` if
     /// something about this model has to be examined more closely, by [`Flow::new`].
     pub fn flow(&self, model: &Model, t: f64) -> Option<Flow> {
         let values = model.start().ok()?;

@@ -106,7 +106,7 @@ impl Reading {
         Some(values)
     }
 
-    /// The (x, η, z), with all η, of a state.
+    /// Converts a state to (x, η, z) with all η.
     ///
     /// # Errors
     /// [`MechError`] if no quasi-velocities give these momenta.
@@ -116,7 +116,7 @@ impl Reading {
         Ok(all)
     }
 
-    /// Writes the (x, η, z), with all η, of a state to `all`.
+    /// Converts a state to (x, η, z) with all η, and writes this to `all`.
     ///
     /// # Errors
     /// As for [`read`](Reading::read).
@@ -135,7 +135,7 @@ impl Reading {
         outcome
     }
 
-    /// Writes to `all` the (x, η, z) with all η that belongs to one with only the free η.
+    /// Converts (x, η, z) with only the free η to (x, η, z) with all η, and writes this to `all`.
     pub(super) fn complete(&mut self, t: f64, free: &[f64], all: &mut Vec<f64>) {
         let n = self.coordinates;
         all.clear();
@@ -145,7 +145,7 @@ impl Reading {
         all.extend_from_slice(&free[n + self.free.len()..]);
     }
 
-    /// The state that corresponds to an (x, η, z) with all η.
+    /// Converts (x, η, z) with all η to a state.
     ///
     /// # Errors
     /// [`MechError`] if the quasi-velocities have no momenta.

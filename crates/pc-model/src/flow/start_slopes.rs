@@ -6,8 +6,8 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::flow::flow::Flow;
 use crate::model::model::Model;
 
-/// The step for a central difference with respect to a parameter of this value. It makes truncation and
-/// rounding errors equal, so that the difference is accurate to ten digits.
+/// The step for a central difference with respect to a parameter of this value. This step makes truncation
+/// and rounding errors equal, so that the difference is accurate to ten digits.
 fn step(value: f64) -> f64 {
     let size = if value == 0.0 { 1.0 } else { value.abs() };
     f64::EPSILON.cbrt() * size
@@ -15,17 +15,17 @@ fn step(value: f64) -> f64 {
 
 impl Flow {
     /// The derivative ∂y₀/∂pⱼ of the start of this flow of a model with respect to number j of the
-    /// [parameters](Model::parameters): the start of a column of sensitivities. It is a central difference of starts, since
-    /// these may be expressions in parameters or may be moved onto constraints that contain parameters. No equation is
-    /// derived for this.
+    /// [parameters](Model::parameters): the start of a column of sensitivities. The derivative is a central difference of
+    /// starts, since start values may be expressions in parameters or may be moved onto constraints that contain
+    /// parameters. No equation is derived for this.
     ///
     /// # Errors
     /// [`ModelError`] if the model has no start for nearby values of the parameter, for example because the start
     /// is not moved onto constraints that depend on it; for an input with a table; and for a parameter given by
-    /// an expression in others.
+    /// an expression in other parameters.
     ///
     /// # Panics
-    /// If there is no such parameter.
+    /// Panics if there is no such parameter.
     pub fn start_by_parameter(
         &self,
         model: &Model,
@@ -59,7 +59,7 @@ impl Flow {
         Ok(ends[0].iter().zip(&ends[1]).map(|(ahead, behind)| (ahead - behind) / length).collect())
     }
 
-    /// The start of a model of the same text with other values of its parameters.
+    /// The start of a model with the same text but other values of its parameters.
     fn start_with(&self, model: &Model, assembly: &Assembly<'_>) -> Result<Vec<f64>, ModelError> {
         let start = assembly.start_with(model)?;
         let mut flow = self.clone();
@@ -79,7 +79,7 @@ impl Flow {
     /// derivatives of columns that are not components of the state are central differences, accurate to ten digits.
     ///
     /// # Panics
-    /// If there is no such parameter, or `column` does not have the length of the state.
+    /// Panics if there is no such parameter, or `column` does not have the length of the state.
     pub fn derivative(&self, t: f64, state: &[f64], column: &[f64], j: usize) -> Vec<f64> {
         assert_eq!(column.len(), state.len(), "length of the state");
         let components = self.motion.names();

@@ -24,8 +24,8 @@ impl Flow {
     /// atolᵢ = min(1e-12, max(rtol sᵢ, 1e-16 s)),      sᵢ = |yᵢ| or τ |ẏᵢ|,      s = max |yᵢ|,      τ = s / max |ẏᵢ|
     /// ```
     /// at the start. Here sᵢ is |yᵢ|, or τ |ẏᵢ| for a component that starts at zero, or s if its rate is zero too. So a component
-    /// that begins at 1e-9 is computed to as many digits as one that begins at 1, in whatever units, as far as rounding errors of the
-    /// larger components allow. If the whole state starts at zero, τ is the time span.
+    /// that begins at 1e-9 is computed to as many digits as one that begins at 1, whatever the units, as far as rounding errors of
+    /// the larger components allow. If the whole state starts at zero, τ is the time span.
     pub fn absolute_tolerances(
         &mut self,
         given: &AbsoluteTolerance,

@@ -6,19 +6,18 @@ use pc_expr::parse::{FUNCTIONS, is_name};
 
 use crate::import::robot::{Joint, Kind, Link};
 
-/// The suffixes of the names of a body's coordinates and velocities, if its joint has several of them.
+/// The suffixes of the names of a body's coordinates and velocities, if its joint has several coordinates.
 const PLANAR: [&str; 3] = ["x'", "y'", "φ'"];
 const FLOATING: [&str; 6] = ["v1", "v2", "v3", "ω1", "ω2", "ω3"];
 const OF_COORDINATES: [&str; 8] = ["x", "y", "z", "φ", "q0", "q1", "q2", "q3"];
 
-/// The names in the model of a robot: those of links and joints, changed if they are not valid names or are
-/// taken.
+/// The names in the model of a robot: those of its links and joints, changed if they are invalid or taken.
 pub(crate) struct Names<'a> {
     /// The names of the bodies of links.
     bodies: HashMap<&'a str, String>,
-    /// The names of the coordinates of joints that have exactly one.
+    /// The names of the coordinates, for joints that have exactly one coordinate.
     coordinates: HashMap<&'a str, String>,
-    /// The names of the damping parameters, for the joints that have one.
+    /// The names of the damping parameters, for the joints that have such a parameter.
     dampings: HashMap<&'a str, String>,
 }
 
@@ -65,7 +64,7 @@ impl<'a> Names<'a> {
         self.coordinates.get(joint.name.as_str()).map(String::as_str)
     }
 
-    /// The name of the damping parameter of a joint, if it has one.
+    /// The name of the damping parameter of a joint, if the joint has such a parameter.
     pub(crate) fn damping(&self, joint: &Joint) -> Option<&str> {
         self.dampings.get(joint.name.as_str()).map(String::as_str)
     }
@@ -85,8 +84,8 @@ impl<'a> Names<'a> {
     }
 }
 
-/// The name with invalid characters replaced, and extended if it is taken, or if a name `NAME_ENDING` formed
-/// from it is.
+/// The name with invalid characters replaced, and extended if it, or a name `NAME_ENDING` formed from it, is
+/// taken.
 fn unused(name: &str, endings: &[&str], taken: &mut HashSet<String>) -> String {
     let mut own: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     if !is_name(&own) {

@@ -18,7 +18,7 @@ pub(crate) struct Link {
     pub(crate) name: String,
     pub(crate) span: Range<usize>,
     pub(crate) inertial: Option<Inertial>,
-    /// The files of its meshes.
+    /// The files of the link's meshes.
     pub(crate) meshes: Vec<String>,
 }
 

@@ -101,7 +101,7 @@ impl<'a> Tree<'a> {
         Ok(Tree { source, robot, order, names })
     }
 
-    /// An error unless everything that moves has mass, or mimics something that has: a joint that mimics
+    /// Checks that everything that moves has mass, or mimics something that has mass: a joint that mimics
     /// another needs no mass of its own.
     fn check_masses(&self) -> Result<(), UrdfError> {
         let mut carries: HashSet<&str> = HashSet::new();
@@ -313,7 +313,8 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// An angle, written as a multiple of a quarter turn if it is one to the precision of numbers in a file.
+/// An angle, written as a multiple of a quarter turn if it equals such a multiple to the precision of numbers
+/// in a file.
 fn angle(angle: f64) -> String {
     let quarters = (angle / std::f64::consts::FRAC_PI_2).round();
     if quarters != 0.0 && (angle - quarters * std::f64::consts::FRAC_PI_2).abs() <= 1e-10 {
@@ -336,8 +337,8 @@ fn list(numbers: &[f64]) -> String {
     format!("[{}]", numbers.join(", "))
 }
 
-/// The inertia matrix R I Rᵀ, where R is the rotation of the inertial's origin; only the three moments if the
-/// products of inertia vanish.
+/// The inertia matrix R I Rᵀ, where R is the rotation of the inertial's origin; only the three moments of
+/// inertia if the products of inertia vanish.
 fn along_axes_of_the_link(inertial: &Inertial) -> Vec<f64> {
     let [xx, yy, zz, xy, yz, xz] = inertial.inertia;
     let own = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];

@@ -13,7 +13,7 @@ use crate::diagnostics::source::Place;
 use crate::document::{AlgebraDefinition, Bracket, Constraint, Document};
 
 impl Document {
-    /// Runs `work` in a graph. If the graph's budget is spent before or during it, the result is an error
+    /// Runs `work` in a graph. If the graph's budget is spent before or during `work`, the result is an error
     /// that says so, whatever `work` returns.
     pub(crate) fn stage<T>(
         &self,
@@ -134,8 +134,8 @@ impl Document {
         self.source.error(place, kind)
     }
 
-    /// The place in the file where an integral is requested to be kept; its definition if the request is not
-    /// in the file.
+    /// The place in the file where an integral is requested to be kept, or the place of its definition if the
+    /// request is not in the file.
     pub(crate) fn kept_place(&self, name: &str) -> Place {
         let written = self.simulation.project.iter().find(|written| written.value == name);
         let integral = || self.integrals.iter().find(|integral| integral.name.text == name);
@@ -151,7 +151,7 @@ impl Document {
         place.cloned().unwrap_or_else(|| document.end())
     }
 
-    /// The name of operator number s, counted from 1; 0 stands for time.
+    /// The name of operator number s, where operators are counted from 1 and 0 stands for time.
     fn operator_name(&self, s: usize) -> String {
         let declared = &self.quasi_velocities;
         match (s, declared.is_empty()) {

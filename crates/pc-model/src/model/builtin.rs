@@ -85,7 +85,7 @@ pub const TREES: &[Builtin] = models![
     "stewart-platform",
 ];
 
-/// Further models that come with the library: classical motions on which books have been written.
+/// Further models that come with the library: classical motions about which books have been written.
 pub const CLASSICS: &[Builtin] = models![
     "foucault-pendulum",
     "kapitza-pendulum",

@@ -1,15 +1,15 @@
-//! Requests made in addition to the text: other quasi-velocities, and a choice of independent ones.
+//! Requests made in addition to the text: other quasi-velocities, and a choice of independent velocities.
 
 use crate::diagnostics::error::ModelError;
 use crate::model::given::GivenQuasiVelocity;
 use crate::model::model::Model;
 
 impl Model {
-    /// Gives a quasi-velocity in addition to those of the text, as a linear form in the velocities x' and
+    /// Gives a quasi-velocity in addition to those of the text, as a linear form in the velocities x' and the
     /// quasi-velocities of the model, for equations in [given quasi-velocities](crate::Variables::Given). If fewer
-    /// are given than there are independent ones, quasi-velocities of the model complete them; each time, the one
-    /// that is least determined at the start by those already chosen is taken. Each given quasi-velocity is also an
-    /// output.
+    /// are given than there are independent ones, quasi-velocities of the model complete them; each time, the
+    /// quasi-velocity that is least determined at the start by those already chosen is added. Each given
+    /// quasi-velocity is also an output.
     ///
     /// ```
     /// use pc_mech::Graph;
@@ -29,8 +29,8 @@ impl Model {
     /// ```
     ///
     /// # Errors
-    /// [`ModelError`] if the name is invalid or taken, or the text is not an expression; errors in its meaning are
-    /// reported when the model is assembled.
+    /// [`ModelError`] if the name is invalid or taken, or the text is not an expression; errors in the meaning of
+    /// the text are reported when the model is assembled.
     pub fn give_quasi_velocity(&mut self, name: &str, definition: &str) -> Result<(), ModelError> {
         let given = {
             let taken: Vec<&str> = self.given.iter().map(GivenQuasiVelocity::name).collect();
@@ -51,8 +51,8 @@ impl Model {
     }
 
     /// Chooses these velocities as the independent ones in equations from which multipliers are eliminated:
-    /// quasi-velocities of the model, or velocities x' for forms in terms of these. Without names, those
-    /// whose equations are shortest are chosen.
+    /// quasi-velocities of the model, or velocities x' for forms in terms of velocities. Without names, the
+    /// velocities whose equations are shortest are chosen.
     pub fn choose_independent<S: Into<String>>(&mut self, names: impl IntoIterator<Item = S>) {
         self.independent = names.into_iter().map(Into::into).collect();
     }

@@ -32,7 +32,7 @@ pub struct Model {
     pub(crate) external: Vec<String>,
     /// Quasi-velocities given in addition to those of the document.
     pub(crate) given: Vec<GivenQuasiVelocity>,
-    /// The names of the velocities requested as independent ones.
+    /// The names of the velocities that are requested to be independent.
     pub(crate) independent: Vec<String>,
 }
 
@@ -46,10 +46,10 @@ pub struct UnknownParameter {
     pub known: Vec<String>,
 }
 
-/// What an input is given in place of its value in the document.
+/// What replaces the value of an input in the document.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GivenInput {
-    /// A number, constant until it is set.
+    /// A number, which stays constant until it is set.
     Constant(f64),
     /// A function of time.
     Table(Table),
@@ -59,9 +59,9 @@ pub enum GivenInput {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{name}` is not an input of this model; its inputs are {}", if known.is_empty() { "none".to_owned() } else { known.join(", ") })]
 pub struct UnknownInput {
-    /// The name asked for.
+    /// The requested name.
     pub name: String,
-    /// The inputs there are.
+    /// The existing inputs.
     pub known: Vec<String>,
 }
 
@@ -106,7 +106,7 @@ impl Model {
         self.budget = budget;
     }
 
-    /// What is left of the limits.
+    /// The budget that the limits leave for derivations.
     pub fn budget(&self) -> &Budget {
         &self.budget
     }
@@ -132,7 +132,7 @@ impl Model {
     }
 
     /// Sets a parameter, or an input that has no table, to a value other than that in the file. Parameters that are
-    /// expressions in it are updated; one that is itself an expression becomes a number.
+    /// expressions in it are updated; a parameter that is itself an expression becomes a number.
     ///
     /// # Errors
     /// [`UnknownParameter`], which lists the existing parameters.
@@ -146,11 +146,11 @@ impl Model {
         Ok(())
     }
 
-    /// Gives an input a number or a table, whichever of the two it has in the document. A table has to begin at the start of
-    /// the motion or before, which the derivation checks.
+    /// Gives an input a number or a table, whether it has a number or a table in the document. A table has to begin at or
+    /// before the start of the motion; the derivation checks this.
     ///
     /// # Errors
-    /// [`UnknownInput`] with the inputs there are.
+    /// [`UnknownInput`], which lists the existing inputs.
     pub fn give_input(&mut self, name: &str, given: GivenInput) -> Result<(), UnknownInput> {
         let names = || self.document.inputs.iter().map(|input| input.name.text.as_str());
         let Some(index) = names().position(|known| known == name) else {
@@ -244,7 +244,7 @@ impl Model {
     }
 
     /// Sets whether sensitivities are needed: motions are then compiled with their derivatives with respect to the
-    /// parameters, and events with theirs with respect to time, state and parameters.
+    /// parameters, and events with their derivatives with respect to time, state and parameters.
     pub fn differentiate_by_parameters(&mut self, yes: bool) {
         self.by_parameters = yes;
     }

@@ -15,7 +15,7 @@ pub struct UnknownStart {
     pub known: Vec<String>,
 }
 
-/// A name that is neither a parameter nor has a start value.
+/// A name that is not that of a parameter and has no start value.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "`{name}` is neither a parameter nor a start value of this model; its parameters are {}, its start values {}",
@@ -63,7 +63,7 @@ impl Model {
         self.document().start_names()
     }
 
-    /// These absolute tolerances, completed by those of the text.
+    /// These absolute tolerances, completed by the tolerances of the text.
     ///
     /// # Errors
     /// [`UnknownStart`] for a name that has no start value.
@@ -92,7 +92,7 @@ impl Model {
     }
 
     /// Holds the value of a coordinate or quasi-velocity fixed when the start is [moved onto the
-    /// constraints](Model::project_start): only the others move.
+    /// constraints](Model::project_start): only the other values move.
     ///
     /// # Errors
     /// [`UnknownStart`], which lists the existing names.
@@ -138,8 +138,8 @@ impl Model {
     }
 
     /// The start state (x, η, z) with the declared η, or (x, x', z) if none is declared: the values of the
-    /// [`start_names`](Model::start_names) for the current parameters, whether or not they satisfy the constraints,
-    /// and 0 where no value is given.
+    /// [`start_names`](Model::start_names) for the current parameters, whether or not these satisfy the
+    /// constraints, and 0 where no value is given.
     ///
     /// # Errors
     /// [`ModelError`] if a start value is not a number.

@@ -10,7 +10,7 @@ use crate::names::scope::{Context, Scope};
 use crate::names::stage::Stage;
 
 impl<'g> Scope<'g, '_> {
-    /// Resolves the definitions that are not used: they may contain anything that an output may contain.
+    /// Resolves the definitions that are not used, which may contain anything that an output may contain.
     pub(crate) fn look_at_unused(&mut self) -> Result<(), ModelError> {
         let used: BTreeSet<usize> = self.definitions.keys().map(|&(_, place)| place).collect();
         for place in (0..self.document.definitions.len()).filter(|place| !used.contains(place)) {
@@ -19,8 +19,8 @@ impl<'g> Scope<'g, '_> {
         Ok(())
     }
 
-    /// The meaning of each definition after `replacements`; definitions that have different meanings in
-    /// different places are left out.
+    /// The meaning of each definition after the `replacements` are substituted; definitions that have
+    /// different meanings in different places are left out.
     pub(crate) fn meanings(&self, replacements: &[(Expr<'g>, Expr<'g>)]) -> Vec<(String, Expr<'g>)> {
         let places: Vec<usize> = self.definitions.keys().map(|&(_, place)| place).collect();
         let values: Vec<Expr<'g>> = self.definitions.values().copied().collect();
@@ -34,8 +34,8 @@ impl<'g> Scope<'g, '_> {
         meanings.into_iter().filter_map(|(place, value)| Some((name(place), value?))).collect()
     }
 
-    /// The definition with index `place`, resolved after those that it uses: they precede it, so that
-    /// resolving them in order needs no deep recursion.
+    /// The definition with index `place`, resolved after the definitions that it uses: these precede it, so
+    /// that resolving all in order needs no deep recursion.
     pub(crate) fn definition(&mut self, place: usize, stage: Stage) -> Result<Expr<'g>, ModelError> {
         self.uses.push(((stage, place), self.context.clone()));
         if let Some(&value) = self.definitions.get(&(stage, place)) {

@@ -1,4 +1,4 @@
-//! Bodies on joints, in the form that the mechanics takes, and their named points.
+//! Bodies on joints, in the form that `pc_mech` accepts, and their named points.
 
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
@@ -164,8 +164,8 @@ fn entry_of_rotation(entry: Expr<'_>) -> Expr<'_> {
     entry.constant().and_then(|value| near(value.to_f64())).map_or(entry, Expr::from)
 }
 
-/// The number of quarter turns in an angle, 0 to 3, if the angle is a multiple of one up to rounding error: a
-/// rounded π has a sine that is not 0.
+/// The number of quarter turns in an angle, 0 to 3, if the angle is a multiple of a quarter turn up to
+/// rounding error: the sine of a rounded π is not 0.
 fn quarters(angle: f64) -> Option<u8> {
     let count = (angle / FRAC_PI_2).round();
     let is_some = (angle - count * FRAC_PI_2).abs() <= 4.0 * f64::EPSILON * angle.abs() && count.abs() < 1e3;

@@ -121,7 +121,7 @@ impl<'g> Scope<'g, '_> {
     }
 
     /// The first acceleration or reaction found in a function, if any: these are known along a motion, but not as
-    /// functions of the state that could be differentiated.
+    /// functions of the state, so that they cannot be differentiated.
     fn without_rate(
         &self,
         value: Expr<'g>,

@@ -24,7 +24,7 @@ pub(crate) struct Written<'g> {
     context: Context<'g>,
 }
 
-/// Where a part stands: in which definition, if any, and in which branches of `step`.
+/// Where a part is written: in which definition, if any, and in which branches of `step`.
 #[derive(Clone, Default)]
 pub(super) struct Context<'g> {
     pub(super) definition: Option<(Stage, usize)>,
@@ -57,19 +57,19 @@ pub(crate) struct Scope<'g, 'd> {
     pub(super) definitions: BTreeMap<(Stage, usize), Expr<'g>>,
     /// The places where definitions are used.
     pub(super) uses: Vec<((Stage, usize), Context<'g>)>,
-    /// Where the part that is being resolved stands.
+    /// Where the part that is being resolved is written.
     pub(super) context: Context<'g>,
     /// Quotients, calls and whole expressions, in the order of their evaluation: each after its parts.
     pub(crate) written: Vec<Written<'g>>,
-    /// The components of points, which are computed once one is used.
+    /// The components of points, which are all computed when one of them is used.
     pub(super) points: Option<HashMap<String, Expr<'g>>>,
     /// The forces and torques of reactions that are used, each with a place in the file.
     pub(crate) resultants: Vec<(Expr<'g>, Place)>,
 }
 
 impl<'g, 'd> Scope<'g, 'd> {
-    /// Creates the symbols, beginning with the parameters, since print-outs order factors by the creation of
-    /// their symbols.
+    /// Creates the symbols, beginning with the parameters, since print-outs list factors in the order in
+    /// which their symbols were created.
     pub(crate) fn new(graph: &'g Graph, document: &'d Document) -> Scope<'g, 'd> {
         let names = document.parameters.iter().map(|p| &p.name.text);
         let coordinates = document.coordinates.iter().map(|c| &c.name.text);
@@ -121,7 +121,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         self.document.quasi_velocities.iter().map(|q| self.graph.symbol(&q.name.text)).collect()
     }
 
-    /// The expression for the value of number `place` of the parameters, which the inputs follow.
+    /// The expression for the value with index `place` among the parameters and, after them, the inputs.
     pub(crate) fn parameter(
         &mut self,
         place: usize,
@@ -162,8 +162,8 @@ impl<'g, 'd> Scope<'g, 'd> {
         self.written.push(Written { value, place: expression.place(span), text, context });
     }
 
-    /// The written parts that count at these values: those in branches of `step` that are not taken are left
-    /// out, and so are those of a definition that is used only in such branches.
+    /// The written parts that affect the result at these values: those in branches of `step` that are not
+    /// taken are left out, and so are those of a definition that is used only in such branches.
     pub(crate) fn taken(&self, values: &[(Expr<'g>, f64)]) -> Vec<&Written<'g>> {
         let is_taken = |branch: &Branch<'g>| {
             let condition = self.graph.evaluate(&[branch.condition], values);

@@ -3,38 +3,38 @@
 /// Which names an expression may contain, depending on its place in the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Stage {
-    /// The value of a parameter: the preceding parameters.
+    /// The value of a parameter may contain the preceding parameters.
     Parameter,
-    /// A start value: parameters, and definitions in terms of them.
+    /// A start value may contain parameters, and definitions in terms of them.
     Start,
-    /// A definition of a quasi-velocity: coordinates, t, and velocities x'.
+    /// A definition of a quasi-velocity may contain coordinates, t, and velocities x'.
     Definition,
-    /// Kinematics: coordinates, t, and quasi-velocities.
+    /// Kinematics may contain coordinates, t, and quasi-velocities.
     Kinematics,
-    /// The constants of a body with a joint, of the joint, and of a point: parameters, and definitions in
-    /// terms of them.
+    /// The constants of a body with a joint, of the joint, and of a point may contain parameters, and
+    /// definitions in terms of them.
     Joint,
-    /// The mass, inertia, position and orientation of a body: coordinates and t.
+    /// The mass, inertia, position and orientation of a body may contain coordinates and t.
     Position,
-    /// The mass and inertia of a body: coordinates, first-order states and t.
+    /// The mass and inertia of a body may contain coordinates, first-order states and t.
     Inertia,
-    /// The rate of a first-order state: everything but accelerations.
+    /// The rate of a first-order state may contain everything but accelerations.
     Rate,
-    /// The acceleration of gravity: parameters and t.
+    /// The acceleration of gravity may contain parameters and t.
     Gravity,
-    /// A constraint: everything but accelerations.
+    /// A constraint may contain everything but accelerations.
     Constraint,
-    /// The energy or a force: everything but accelerations.
+    /// The energy or a force may contain everything but accelerations.
     Dynamics,
-    /// An event: everything but accelerations.
+    /// An event may contain everything but accelerations.
     Event,
-    /// A requested function: everything but accelerations.
+    /// A requested function may contain everything but accelerations.
     Function,
-    /// A shape that is drawn: everything but accelerations.
+    /// A shape that is drawn may contain everything but accelerations.
     Drawing,
-    /// The action: its constants, coordinates and t.
+    /// The action may contain its constants, coordinates and t.
     Action,
-    /// Integrals and outputs: everything.
+    /// Integrals and outputs may contain everything.
     Observation,
 }
 

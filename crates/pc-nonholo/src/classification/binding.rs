@@ -1,21 +1,21 @@
-//! Binding constraints, and redundant ones that follow from them.
+//! Binding constraints, and the redundant constraints that follow from them.
 
 use pc_mech::{Constraint, Expr, Graph, System};
 
 use crate::classification::positions::{Place, Positions, norm};
 use crate::error::NonholoError;
 
-/// A unit vector whose remainder is below this, the square root of a rounding error, may be linearly
-/// dependent on others.
+/// A unit vector may be linearly dependent on others if its part orthogonal to them is shorter than this, the
+/// square root of a rounding error.
 const DEPENDENT: f64 = 1e-7;
 
-/// The remainder that rounding errors leave of coefficients that are linearly dependent on others where
-/// conditions on positions hold, relative to their remainder at a distance of a hundredth of the size of the
-/// system.
+/// Coefficients count as linearly dependent on others where conditions on positions hold if the part of them
+/// that is orthogonal to the others is, relative to that part at a distance of a hundredth of the system's
+/// size, no longer than this: rounding errors leave as much.
 const VANISHES: f64 = 1e-8;
 
-/// A condition on positions follows from others if it leaves no larger remainder than this, in units of
-/// displacements.
+/// A condition on positions follows from others if, where these hold, its residual in units of displacements
+/// is no larger than this.
 const FOLLOWS: f64 = 1e-9;
 
 /// The number of points at which constraints that are dependent at the start are tested.
@@ -34,9 +34,9 @@ pub struct Redundant {
 ///
 /// Conditions on velocities are C η + c_0 = 0; conditions on positions f = 0 have the coefficients C_s = X_s
 /// f, c_0 = X_0 f. Dependence at almost all states is found exactly. An overconstrained mechanism has
-/// conditions that are dependent only where all of them hold: if the start shows this, dependence is tested
-/// numerically at points around it that satisfy all conditions on positions, and a condition is redundant if
-/// it vanishes near the start wherever the preceding ones do.
+/// conditions that are dependent only where all of them hold: if the start is such a state, dependence is
+/// tested numerically at points around it that satisfy all conditions on positions, and a condition is
+/// redundant if it vanishes near the start wherever the preceding conditions do.
 ///
 /// ```
 /// use pc_mech::{Constraint, Graph, System};
@@ -70,14 +70,14 @@ pub struct Binding {
 impl Binding {
     /// Sorts the constraints of a system. Conditions on positions come first: a condition on velocities may
     /// follow from them, but never the other way round. [Nonlinear](Constraint::nonlinear) constraints bind,
-    /// and no other follows from them.
+    /// and no other constraint follows from them.
     ///
     /// `at` are the values of time and coordinates at which the motion starts, and possibly values of other
     /// symbols.
     ///
     /// # Errors
-    /// [`NonholoError::Contradictory`] for a constraint that no velocity satisfies together with
-    /// others; [`ConstraintError::NotAffine`](pc_mech::ConstraintError::NotAffine).
+    /// [`NonholoError::Contradictory`] for a constraint that contradicts others, so that no velocity
+    /// satisfies them all; [`ConstraintError::NotAffine`](pc_mech::ConstraintError::NotAffine).
     pub fn new<'g>(
         system: &System<'g>,
         constraints: &[Constraint<'g>],
@@ -106,7 +106,7 @@ impl Binding {
         &self.binding
     }
 
-    /// The redundant ones.
+    /// The redundant constraints.
     pub fn redundant(&self) -> &[Redundant] {
         &self.redundant
     }
@@ -125,8 +125,8 @@ struct Found<'a, 'g> {
     constraints: &'a [Constraint<'g>],
     rows: Rows<'g>,
     redundant: Vec<Redundant>,
-    /// Constraints on velocities that contradict others at almost all states, each with the names of those
-    /// others.
+    /// Constraints on velocities that contradict others at almost all states, each with the names of the
+    /// constraints that it contradicts.
     open: Vec<(usize, Vec<String>)>,
 }
 
@@ -171,8 +171,8 @@ impl<'g> Found<'_, 'g> {
         places.into_iter().map(|a| self.constraints[a].name().to_owned()).collect()
     }
 
-    /// Finds the constraints that depend on others where all conditions on positions hold, if the start shows
-    /// that there are any.
+    /// Finds the constraints that depend on others where all conditions on positions hold, if there are any
+    /// such constraints at the start.
     fn look_where_they_hold(&mut self, at: &[(Expr<'g>, f64)]) -> Result<(), NonholoError> {
         let Some(start) = self.start(at).filter(|_| self.rows.places.len() + self.open.len() > 1) else {
             return Ok(());
@@ -217,7 +217,7 @@ impl<'g> Found<'_, 'g> {
         Positions::new(self.system, &functions)
     }
 
-    /// The coefficients C and c_0 of the independent constraints, then of the open ones, at each of the
+    /// The coefficients C and c_0 of the independent constraints, then of the `open` ones, at each of the
     /// points `places`.
     fn at(&self, positions: &Positions<'g>, places: &[Place]) -> Option<Vec<Vec<Vec<f64>>>> {
         let width = self.system.quasi_velocities().len() + 1;
@@ -261,8 +261,8 @@ impl<'g> Found<'_, 'g> {
         Ok(())
     }
 
-    /// Drops a constraint whose coefficients C depend on those of the `kept` ones, if this holds with c_0
-    /// included; otherwise it contradicts them.
+    /// Settles a constraint whose coefficients C are linearly dependent on those of the `kept` constraints:
+    /// drops it if they remain so with c_0 included; otherwise it contradicts the `kept` constraints.
     fn settle(
         &mut self,
         a: usize,
@@ -283,7 +283,7 @@ impl<'g> Found<'_, 'g> {
         Ok(())
     }
 
-    /// Whether a condition on positions vanishes around the start wherever the conditions that were kept do.
+    /// Whether a condition on positions vanishes near the start wherever the kept conditions vanish.
     fn vanishes(&self, a: usize, start: &Place) -> bool {
         let holonomic =
             self.rows.places.iter().copied().filter(|&b| self.constraints[b].is_holonomic(self.system));
@@ -322,8 +322,9 @@ struct Looked {
 }
 
 impl Looked {
-    /// Whether a constraint depends on others where conditions on positions hold: the remainder of its
-    /// coefficients is then negligible relative to the remainder nearby, in any units.
+    /// Whether a constraint depends on others where conditions on positions hold: the part of its
+    /// coefficients that is orthogonal to theirs is then negligible relative to that part nearby, in any
+    /// units.
     fn depends(&self, on: &[usize], index: usize, part: Part) -> bool {
         let left = |places: &[Vec<Vec<f64>>]| {
             let left = places.iter().map(|place| {
@@ -368,7 +369,7 @@ impl Span {
         norm(&self.rest(vector))
     }
 
-    /// Adds a vector. Returns the length of its part orthogonal to the span, as `left_of` does.
+    /// Adds a vector to the span. Returns what `left_of` gives for the vector before it is added.
     fn add(&mut self, vector: &[f64]) -> f64 {
         let rest = self.rest(vector);
         let left = norm(&rest);

@@ -11,13 +11,13 @@ use crate::error::NonholoError;
 pub enum ConstraintKind {
     /// It restricts positions: f(t, x) = 0.
     Position,
-    /// It restricts velocities, but together with the others it can be written f(t, x) = const: it is
-    /// holonomic in disguise.
+    /// It restricts velocities, but together with the other constraints it can be written f(t, x) = const: it
+    /// is holonomic in disguise.
     Integrable,
     /// It restricts velocities but leaves all positions within reach.
     Nonholonomic {
         /// The largest component, along the constraint, of the commutators of the allowed velocities, at the
-        /// state where it was tested.
+        /// state where the constraint was tested.
         residual: f64,
     },
     /// It restricts velocities and is not affine in them. Frobenius' test does not apply to it.
@@ -42,18 +42,20 @@ impl<'g> ConstraintClassification<'g> {
     ///   [X'_r, X'_s] = c'_rs^m X'_m + c'_rs^α X'_α,   r, s = 0..l,
     ///
     /// the constraint α is integrable if these brackets have no component along it, c'_rs^α = 0, and brackets of
-    /// brackets have none either: then it vanishes on the smallest involutive family of fields that contains
-    /// X'_0..X'_l. Conditions on positions come first: a condition on velocities may follow from them, but never the
-    /// other way round.
+    /// brackets have none either: then the constraint vanishes on the smallest involutive family of fields that
+    /// contains X'_0..X'_l. Conditions on positions come first: a condition on velocities may follow from them, but
+    /// never the other way round.
     ///
     /// [Nonlinear](Constraint::nonlinear) constraints come last and are ignored both in the rank and in the test of
-    /// the others; a constraint that restricts no velocity at almost all states is not tested for redundancy.
+    /// the other constraints; a constraint that restricts no velocity at almost all states is not tested for
+    /// redundancy.
     ///
     /// `at` are values of time, coordinates, quasi-velocities and parameters where the constraints are regular.
     ///
     /// # Errors
-    /// [`NonholoError::Contradictory`] for a constraint that no velocity satisfies together with others; the
-    /// errors of [`System::with_multipliers`] and [`Adapted::new`](crate::Adapted::new).
+    /// [`NonholoError::Contradictory`] for a constraint that contradicts others, so that no velocity
+    /// satisfies them all; the errors of [`System::with_multipliers`] and
+    /// [`Adapted::new`](crate::Adapted::new).
     pub fn new(
         system: &System<'g>,
         constraints: &[Constraint<'g>],
@@ -87,9 +89,9 @@ impl<'g> ConstraintClassification<'g> {
 
     /// The number of combinations of the nonholonomic constraints, with coefficients that are functions of time and
     /// coordinates, that are integrable although no single constraint is
-    /// ([`IntegrableCombination`](crate::IntegrableCombination) finds them). It is the l + m dimensions of all
-    /// velocities, l of them allowed, minus those of the smallest involutive family of fields that contains the
-    /// allowed ones, minus the number of integrable constraints.
+    /// ([`IntegrableCombination`](crate::IntegrableCombination) finds them). It is the dimension l + m of the space
+    /// of all velocities, where l is that of the allowed velocities, minus the dimension of the smallest involutive
+    /// family of fields that contains the allowed fields, minus the number of integrable constraints.
     pub fn integrable_combinations(&self) -> usize {
         self.combinations
     }
@@ -105,8 +107,8 @@ impl<'g> ConstraintClassification<'g> {
     }
 }
 
-/// The kind of each constraint, where affine constraints are classified as if there were only these, and the
-/// number of integrable combinations.
+/// The kind of each constraint, and the number of integrable combinations; affine constraints are classified
+/// as if there were no others.
 fn kinds<'g>(
     multipliers: &Multipliers<'g>,
     at: &[(Expr<'g>, f64)],

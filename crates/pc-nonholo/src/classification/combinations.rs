@@ -28,10 +28,10 @@ struct Form<'g> {
 
 impl<'g> IntegrableCombination<'g> {
     /// Finds combinations in closed form among the `count` independent ones that constraints of these `kinds`
-    /// [have](crate::ConstraintClassification::integrable_combinations): their coefficients are constant, or
-    /// functions of time and coordinates, or constant for the given values of the parameters. The combinations found
-    /// are independent of each other, and their integrability is proved. None is found unless there are as many
-    /// quasi-velocities as coordinates.
+    /// [have](crate::ConstraintClassification::integrable_combinations): combinations whose coefficients are
+    /// constant, or functions of time and coordinates, or constant for the given values of the parameters. The
+    /// combinations found are independent of each other, and their integrability is proved. No combination is
+    /// found unless there are as many quasi-velocities as coordinates.
     ///
     /// `at` are values of time, coordinates, quasi-velocities and parameters where the constraints are regular.
     ///
@@ -211,8 +211,8 @@ impl<'g> Search<'_, 'g> {
         Some(basis.into_iter().map(|(form, _)| form).collect())
     }
 
-    /// The forms solved for the differentials of the first variables, in this order, that they determine; each of
-    /// these has the coefficient 1 in one form and 0 in the others.
+    /// The forms solved for the differentials of the first variables, in this order, that the forms determine;
+    /// each such differential has the coefficient 1 in one form and 0 in the others.
     fn solved(&self, mut forms: Vec<Form<'g>>, order: &[usize]) -> Vec<Form<'g>> {
         let mut done = 0;
         for &place in order {

@@ -8,9 +8,8 @@ pub(crate) type OperatorField<'g> = Vec<Expr<'g>>;
 /// The terms of the sums C_αm U^m, which are the components of a field along the constraints.
 pub(crate) type Along<'g> = Vec<Vec<Expr<'g>>>;
 
-/// The components, along the constraints, of further fields that together with the `allowed` ones span all
-/// their commutators, and the commutators of these, at almost every point [Frobenius; Chow, Math. Ann. 117
-/// (1939) 98].
+/// The components, along the constraints, of the fields that complete the `allowed` ones to a family that
+/// contains all its commutators at almost every point [Frobenius; Chow, Math. Ann. 117 (1939) 98].
 ///
 /// The allowed fields are X'_0, which has the component 1 along X_0, and others that have no such component
 /// and satisfy C_αm X'^m = 0; `rows` are the C_α.

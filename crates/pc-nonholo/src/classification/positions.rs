@@ -2,20 +2,20 @@
 
 use pc_mech::{Expr, Graph, LeastSquares, Matrix, System};
 
-/// The largest number of steps towards a nearby point that satisfies a condition; the convergence is
-/// quadratic at the end.
+/// The largest number of steps towards a nearby point that satisfies the conditions; the convergence is
+/// quadratic in the end.
 const MOST_STEPS: usize = 60;
 
 /// The largest number of times that a step is shortened if it brings no improvement.
 const SHORTENINGS: usize = 12;
 
-/// The residual, in units of displacements, that rounding errors leave of satisfied conditions.
+/// The residual, in units of displacements, that rounding errors leave in conditions that are satisfied.
 const SATISFIED: f64 = 1e-11;
 
-/// The relative amount by which coordinates are varied.
+/// The relative amount by which the coordinates are varied.
 const VARIED: f64 = 0.01;
 
-/// Coordinates smaller than this fraction of the largest are varied as if they were of that size.
+/// Coordinates smaller than this fraction of the largest coordinate are varied as if they were of that size.
 const LEAST: f64 = 0.1;
 
 /// Conditions f(t, x) = 0 on the positions of a system, possibly dependent on each other.
@@ -62,7 +62,8 @@ impl<'g> Positions<'g> {
         Positions { graph, time: frame.time(), x, values, count: functions.len(), parameters }
     }
 
-    /// The values at a point of expressions in time, coordinates and parameters; `None` if one is not finite.
+    /// The values, at a point, of expressions in time, coordinates and parameters; `None` if one is not
+    /// finite.
     pub(crate) fn evaluate(&self, expressions: &[Expr<'g>], at: &Place) -> Option<Vec<f64>> {
         let state = self.x.iter().copied().zip(at.x.iter().copied());
         let values: Vec<_> =

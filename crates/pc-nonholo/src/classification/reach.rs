@@ -39,7 +39,7 @@ impl<'g> Reach<'g> {
 }
 
 /// The indices of the constraints that are affine in the velocities and, if there are any, the system under
-/// these alone.
+/// these constraints alone.
 pub(crate) fn affine<'g>(
     multipliers: &Multipliers<'g>,
 ) -> Result<(Vec<usize>, Option<Multipliers<'g>>), NonholoError> {

@@ -23,7 +23,8 @@ impl<'g> Adapted<'g> {
     ///
     /// The dependent quasi-velocities are those that the constraints determine best at the values `at` of time,
     /// coordinates, quasi-velocities and parameters; if a constraint says that a quasi-velocity vanishes, that
-    /// one is dependent. The frame is singular where the constraints do not determine these quasi-velocities.
+    /// quasi-velocity is dependent. The frame is singular where the constraints do not determine these
+    /// quasi-velocities.
     ///
     /// # Errors
     /// [`NonholoError::Nonlinear`]; [`NonholoError::Mech`], where
@@ -55,7 +56,7 @@ impl<'g> Adapted<'g> {
         Ok(Adapted { system: self.system.in_orthonormal_frame(names)?, free: self.free })
     }
 
-    /// The system of all k quasi-velocities, the free ones first.
+    /// The system of all k quasi-velocities, with the free ones first.
     pub fn system(&self) -> &System<'g> {
         &self.system
     }
@@ -102,8 +103,8 @@ pub(crate) fn independent<'g>(
     Ok((0..eta.len()).filter(|s| !dependent.contains(s)).collect())
 }
 
-/// The indices of the quasi-velocities that the constraints set to zero, if that is all that each constraint
-/// does.
+/// The indices of the quasi-velocities that the constraints set to zero, if each constraint does no more than
+/// that.
 fn vanishing<'g>(eta: &[Expr<'g>], velocities: &[Expr<'g>]) -> Option<Vec<usize>> {
     velocities.iter().map(|velocity| eta.iter().position(|eta| eta == velocity)).collect()
 }

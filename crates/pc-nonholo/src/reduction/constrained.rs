@@ -40,7 +40,7 @@ impl<'g> Constrained<'g> {
         Ok(Constrained { system, equations })
     }
 
-    /// The whole system of k quasi-velocities, the l free ones first.
+    /// The whole system of k quasi-velocities, with the l free ones first.
     pub fn system(&self) -> &System<'g> {
         &self.system
     }
@@ -55,8 +55,8 @@ impl<'g> Constrained<'g> {
         &self.equations
     }
 
-    /// The system of the free quasi-velocities, with the constraints substituted into L; the terms that are lost
-    /// by this are added to its forces. Its equations are (32), and in momenta (34).
+    /// The system of the free quasi-velocities, with the constraints substituted into L; the terms that this
+    /// substitution loses are added to its forces. Its equations are (32), and in momenta (34).
     ///
     /// # Errors
     /// [`NonholoError::Mech`] if the parts were inconsistent, which cannot happen.
@@ -74,7 +74,7 @@ impl<'g> Constrained<'g> {
         self.reactions_by(&self.equations.accelerations())
     }
 
-    /// The reactions expressed with these accelerations of the free η, which may be symbols.
+    /// The reactions in terms of these accelerations of the free η, which may be symbols.
     pub fn reactions_by(&self, accelerations: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let (system, graph) = (&self.system, self.system.graph());
         let frame = system.frame();

@@ -133,7 +133,7 @@ impl<'g> Voronets<'g> {
     /// 0 for time, and i = 1..l.
     ///
     /// # Panics
-    /// If j or i is greater than l.
+    /// Panics if j or i is greater than l.
     pub fn structure(&self, j: usize, i: usize) -> Vec<Expr<'g>> {
         let column = |i: usize| match i.checked_sub(1) {
             None => self.drift.clone(),
@@ -145,7 +145,7 @@ impl<'g> Voronets<'g> {
     }
 
     /// The system of the independent velocities whose equations (9) are (35): its Lagrangian is θ + U, and the terms
-    /// that are lost by substituting the constraints are added to the forces.
+    /// that are lost when the constraints are substituted are added to the forces.
     ///
     /// # Errors
     /// [`NonholoError::Mech`] if the parts were inconsistent, which cannot happen.
