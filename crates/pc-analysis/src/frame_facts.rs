@@ -1,4 +1,4 @@
-//! Properties of the frame and its brackets, without a Lagrangian.
+//! Properties of the frame and its brackets, which need no Lagrangian.
 
 use pc_algebra::{Holonomy, Integrability};
 use pc_mech::{Expr, Neighbourhood, System};
@@ -10,7 +10,7 @@ pub struct FrameFacts<'g> {
     pub holonomy: Vec<(String, QuasiVelocityKind<'g>)>,
     /// Whether η = ẋ.
     pub lagrangian: bool,
-    /// The constraints that hold by the frame alone, if n > rank b.
+    /// The constraints that the frame alone imposes, if n > rank b.
     pub constraints: Option<FrameConstraints>,
 }
 
@@ -19,7 +19,7 @@ pub struct FrameFacts<'g> {
 pub enum QuasiVelocityKind<'g> {
     /// It is the rate of this π; `None` if π was not found.
     RateOf(Option<Expr<'g>>),
-    /// It is not the rate of a function, because of the bracket of this pair.
+    /// It is not the rate of a function, as the bracket of this pair shows.
     RateOfNothing([String; 2]),
 }
 
@@ -33,7 +33,7 @@ pub enum FrameConstraints {
         /// Whether the f depend on time.
         of_time: bool,
     },
-    /// Not all of them can be written in this form, because of the bracket of this pair.
+    /// Not all of them can be written in this form, as the bracket of this pair shows.
     NotIntegrable {
         /// Names of two quasi-velocities, or `t`.
         pair: [String; 2],

@@ -60,7 +60,8 @@ impl<'g> PoissonBracket<'g> {
     }
 }
 
-/// (∂L/∂η_α)_0 in terms of the symbols `free` of the free quasi-velocities, and the number of these.
+/// (∂L/∂η_α)_0 in terms of the symbols `free` of the free quasi-velocities, and the number of free
+/// quasi-velocities.
 fn dropped_momenta<'g>(constrained: &Constrained<'g>, free: &[Expr<'g>]) -> (Vec<Expr<'g>>, usize) {
     let (system, l) = (constrained.system(), free.len());
     let eta = system.quasi_velocities();

@@ -31,8 +31,8 @@ pub struct Residual {
 }
 
 impl<'g> ProposedAction<'g> {
-    /// The verdict on S = `action`, a function of (t, x) and of `constants`: from the cancellation of terms,
-    /// and from numerical values `near` a point where S is defined.
+    /// The verdict on S = `action`, a function of (t, x) and of `constants`, based on the cancellation of
+    /// terms and on numerical values `near` a point where S is defined.
     ///
     /// # Errors
     /// As for [`hamilton_jacobi`].

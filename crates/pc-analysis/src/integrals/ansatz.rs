@@ -23,9 +23,9 @@ impl<'g> Rates<'g> {
     /// including constants and integrals that are functions of each other.
     ///
     /// The functions are of (t, x, η) or (t, x, y), and may contain parameters. Each integral is proved: its rate is
-    /// folded to zero. Parameters count as unknowns, which the coefficients do not contain:
-    /// [bind](Rates::with_parameters_bound) them to search for given values. See
-    /// [`linear_relations`](pc_expr::Graph::linear_relations) for other integrals that may be missed.
+    /// folded to zero. Parameters count as indeterminates, and the coefficients do not contain them;
+    /// [bind](Rates::with_parameters_bound) them to search for integrals at given values. See
+    /// [`linear_relations`](pc_expr::Graph::linear_relations) for integrals that may be missed.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for a function of something that does not belong to the motion.
@@ -83,11 +83,10 @@ impl<'g> Rates<'g> {
     }
 }
 
-/// The positions in which a symbol occurs in an expression: in the argument of a sine or cosine, or
-/// elsewhere.
+/// Where a symbol occurs in an expression: in the argument of a sine or cosine, or elsewhere.
 ///
-/// It is found by evaluating the expression over this type: the symbol itself counts as occurring elsewhere,
-/// all others as occurring nowhere.
+/// This is found by evaluating the expression over this type: the symbol itself counts as occurring
+/// elsewhere, all others as occurring nowhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Places {
     in_circle: bool,

@@ -14,7 +14,7 @@ pub struct CyclicDisplacement<'g> {
     /// The integral a_s ∂L/∂η_s in terms of (t, x, η).
     pub momentum: Expr<'g>,
     /// Whether X commutes with X_0..X_k, that is, a_s c_rs^m = 0 for r = 0..k. If so, the condition is X L + a_s
-    /// Q_s = 0; otherwise it holds because terms of this particular Lagrangian cancel.
+    /// Q_s = 0; otherwise the condition holds because terms of this particular Lagrangian cancel.
     pub commutes: bool,
 }
 

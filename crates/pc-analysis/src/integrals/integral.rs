@@ -60,11 +60,11 @@ pub enum ConservationVerdict<'g> {
         rate: Expr<'g>,
         /// Its value at the start, if it has one.
         at_start: Option<f64>,
-        /// The size of the sum of its terms at the start as a fraction of their sizes, from 0 to 1: only rounding error if the
-        /// function is an integral.
+        /// The absolute value of the rate at the start, divided by the sum of the absolute values of its terms, from 0
+        /// to 1: only rounding error if the function is an integral.
         part_left: Option<f64>,
-        /// The same at states near the start, if the start alone does not refute conservation and every nearby state is
-        /// possible.
+        /// The same quotient at states near the start, if the start alone does not refute conservation and every nearby
+        /// state is possible.
         near: Option<f64>,
     },
 }

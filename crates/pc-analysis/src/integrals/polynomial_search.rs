@@ -11,8 +11,8 @@ use crate::integrals::search::{Search, binomial};
 /// The largest number of functions with unknown coefficients; a search with this many takes some seconds.
 const MOST_FUNCTIONS: usize = 600;
 
-/// The greatest length of the accelerations along which functions are differentiated, in operations when
-/// written out.
+/// The greatest length of the accelerations along which functions are differentiated, counted in operations
+/// of the written-out expressions.
 const LONGEST: u32 = 4_000;
 
 /// The largest number of products of known integrals that are excluded from the results.
@@ -128,7 +128,7 @@ impl<'g> Integrals<'g> {
         }
     }
 
-    /// Adds the integrals in a span of functions, of low degree first.
+    /// Adds the integrals in a span of functions, those of low degree first.
     fn add_span(
         &mut self,
         search: &Search<'_, 'g>,
@@ -184,7 +184,7 @@ impl<'g> Integrals<'g> {
 
 /// The functions that have unknown coefficients in a search.
 struct Span<'g> {
-    /// In order of ascending degree in η.
+    /// The functions, in order of ascending degree in η.
     functions: Vec<Expr<'g>>,
     /// The number of functions of degree ≤ 0, 1, ….
     up_to_degree: Vec<usize>,
@@ -193,8 +193,8 @@ struct Span<'g> {
 }
 
 impl<'g> Span<'g> {
-    /// The span whose coefficients have the largest degree up to `most` that can be searched; if even degree
-    /// 0 has too many functions, their number.
+    /// The span whose coefficients have the largest degree up to `most` that can be searched; if there are
+    /// too many functions even for degree 0, their number.
     fn new(
         graph: &'g Graph,
         rates: &Rates<'g>,
@@ -283,11 +283,11 @@ fn is_combination<'g>(graph: &'g Graph, of: &[Expr<'g>], f: Expr<'g>) -> bool {
     graph.dependent_columns(&columns, &[]).iter().any(|&(j, _)| j == of.len())
 }
 
-/// The integral Σ a_i(p) f_i for all values of the parameters p that equals Σ a_i f_i for the present ones,
-/// up to a factor, if there is one whose coefficients are polynomials of low degree in the parameters of its
-/// rates; the one of lowest degree.
+/// The integral Σ a_i(p) f_i for all values of the parameters p that for their present values equals Σ a_i
+/// f_i up to a factor, if there is one whose coefficients are polynomials of low degree in the parameters of
+/// its rates; of several, the one of lowest degree.
 ///
-/// It is unique up to its factor: without the last of them, the functions in a relation in echelon form are
+/// It is unique up to its factor: all but the last of the functions in a relation in echelon form are
 /// independent, for these values and therefore for almost all.
 fn with_parameters<'g>(
     search: &Search<'_, 'g>,

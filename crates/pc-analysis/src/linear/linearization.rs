@@ -60,8 +60,8 @@ pub enum CyclicCoordinates {
     /// No cyclic coordinates: stability is judged without them.
     #[default]
     LeftOut,
-    /// The cyclic coordinates at rest on which no moving ones act: without the others the equations have
-    /// constant coefficients.
+    /// The cyclic coordinates that are at rest and unaffected by moving ones; without the other cyclic
+    /// coordinates the equations have constant coefficients.
     KeptAtRest,
 }
 
@@ -141,7 +141,7 @@ impl Linearizer {
         Ok(reduced.kept.len())
     }
 
-    /// The cyclic coordinates that move, and those on whose rates moving ones act.
+    /// The cyclic coordinates that move, and those whose rates depend on moving ones.
     fn moving(&mut self, t: f64, state: &[f64]) -> Result<Vec<usize>, AnalysisError> {
         let rates = self.motion.rates(t, state)?;
         let jacobian = first_approximation(&mut self.motion, t, state)?;

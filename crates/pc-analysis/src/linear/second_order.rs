@@ -60,7 +60,7 @@ pub enum NoSecondOrder {
     /// First-order states act on the velocities.
     #[error("the first-order state {state} acts on the velocities")]
     FirstOrderState {
-        /// The first state that does.
+        /// The first such state.
         state: String,
     },
 }

@@ -118,8 +118,8 @@ impl SteadyMotion {
         })
     }
 
-    /// The steady motion among the states with g(y) = 0, for coordinates that are not independent, for
-    /// example γ² = 1.
+    /// The steady motion among the states with g(y) = 0, for coordinates that are not independent, such as
+    /// those with γ² = 1.
     ///
     /// `surface` returns g(y), m numbers, and ∂g/∂y, m × n, for a state y of n components. Steady motions
     /// remain steady only if the functions g are constant along the motion.
@@ -246,7 +246,7 @@ fn components(motion: &Motion, names: &[String]) -> Result<Vec<usize>, AnalysisE
         .collect()
 }
 
-/// The indices of the cyclic coordinates: the named ones, or all.
+/// The indices of the cyclic coordinates: of the named ones, or of all.
 fn cyclic_among(motion: &Motion, named: Option<&[String]>) -> Result<Vec<usize>, AnalysisError> {
     let pattern =
         motion.sparsity().ok_or(MechError::Evaluation(EvaluationError::NotCompiled { what: "Jacobian" }))?;

@@ -220,7 +220,7 @@ impl<'a, 'g> Seeker<'a, 'g> {
         (largest(&found.first_approximation) <= self.steepest).then_some(found)
     }
 
-    /// The motion as names and numbers, with the results for its stability.
+    /// The motion as names and numbers, with the results on its stability.
     pub(crate) fn described(
         &self,
         found: &SteadyMotion,
