@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use crate::recording::Recording;
 
-/// A limit on the count of numbers in all stills together: a third of a megabyte.
+/// The largest number of values in all stills together, which take up a third of a megabyte.
 const MOST_NUMBERS: usize = 60_000;
 
 /// A shape, whose numbers are stored in the stills, shape by shape.
@@ -155,7 +155,7 @@ impl Scene {
         }))
     }
 
-    /// The count of the numbers that all shapes have in a still.
+    /// The number of values that all shapes together have in each still.
     pub fn width(&self) -> usize {
         self.shapes.iter().map(SceneShape::numbers).sum()
     }

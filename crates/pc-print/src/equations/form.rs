@@ -15,7 +15,7 @@ pub enum Form {
     Voronets,
     /// Equations for the quasi-velocities, omitting coordinates on which nothing depends: Euler–Poincaré.
     Reduced,
-    /// Equations for the momenta of these quasi-velocities: Lie–Poisson.
+    /// Equations for the momenta, omitting coordinates on which nothing depends: Lie–Poisson.
     LiePoisson,
     /// Equations for quasi-velocities that are orthonormal in the kinetic metric.
     Orthonormal,

@@ -55,7 +55,7 @@ pub(crate) fn displays<'a, 'p>(
     parts.with_names().map(display).collect()
 }
 
-/// Puts some lines into an environment that aligns them.
+/// Puts lines into an environment that aligns them.
 pub(crate) fn aligned(lines: &[String]) -> String {
     format!("\\begin{{align*}}\n{}\n\\end{{align*}}", lines.join(" \\\\\n"))
 }
@@ -67,7 +67,7 @@ struct Latex<'a, 'p> {
     layout: &'a Layout,
     names: &'a Names<'p>,
     set: Written,
-    /// The same expressions in plain characters, whose widths decide where lines are broken.
+    /// The expressions of the sheet in plain characters, whose widths decide where lines are broken.
     plain: Written,
 }
 

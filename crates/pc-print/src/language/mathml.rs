@@ -155,7 +155,7 @@ struct Set<'a, 'p> {
     layout: &'a Layout,
     names: &'a Names<'p>,
     set: Written,
-    /// The same expressions in plain characters, whose widths decide where lines are broken.
+    /// The expressions of the sheet in plain characters, whose widths decide where lines are broken.
     plain: Written,
 }
 

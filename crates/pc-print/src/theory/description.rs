@@ -48,7 +48,7 @@ pub(crate) enum Verdict {
     Proved,
     /// It holds for the present values of the parameters.
     ProvedHere,
-    /// It does not hold: numerically, the terms of an identity leave this fraction of their size.
+    /// It does not hold: numerically, the terms of an identity add up to this fraction of their size.
     Disproved {
         /// The fraction, from 0 to 1.
         margin: f64,
@@ -110,7 +110,7 @@ impl<'g> Side<'g> {
         Side { expression: Some(e), ..Side::default() }
     }
 
-    /// A text, as `write` gives it in each style.
+    /// A text, as `write` produces it in each style.
     pub(crate) fn written(write: impl Fn(Style) -> String) -> Side<'g> {
         Side {
             expression: None,

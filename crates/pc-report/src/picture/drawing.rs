@@ -39,7 +39,7 @@ pub enum Shape {
     },
     /// Text on one line.
     Text {
-        /// The position of its beginning, its middle, or its end, on its base line.
+        /// The position of its beginning, its middle, or its end, on its baseline.
         at: [f64; 2],
         /// The point of the text that is at that position.
         anchor: Anchor,
@@ -73,7 +73,7 @@ pub enum Ink {
     Soft,
     /// Axes.
     Axis,
-    /// Lines through round numbers.
+    /// Grid lines at round numbers.
     Grid,
     /// Lines at the times of events.
     Event,
@@ -101,7 +101,7 @@ impl Ink {
     /// The number of distinguishable curves.
     pub(crate) const CURVES: usize = COLOURS.len();
 
-    /// Its red, green and blue on white.
+    /// Its red, green and blue components, for a white background.
     pub fn colour(self) -> [u8; 3] {
         match self {
             Ink::Text | Ink::Rod => [29, 36, 48],

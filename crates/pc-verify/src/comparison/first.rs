@@ -204,8 +204,8 @@ impl<'g> First<'g> {
         }
     }
 
-    /// The equations with those candidates to be compared that the second derivation also has, except the
-    /// values that are given to the first.
+    /// The equations with the quantities to compare: those of the `candidates` that the second derivation
+    /// also has, except the `inputs`, which are given to the first.
     fn comparing(
         form: &str,
         candidates: Vec<(String, Option<Quantity>)>,

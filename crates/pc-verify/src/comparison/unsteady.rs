@@ -108,7 +108,7 @@ mod tests {
 
     /// As x tends to 0, the constraint determines w less and less accurately: the printed expression for the
     /// other velocity has terms in 1/x⁴ that cancel and absorb the remainder. Some states give no information
-    /// about it, others do.
+    /// about w, while others do.
     #[test]
     fn absorbed_terms_are_ignored() {
         let agreement = verified(

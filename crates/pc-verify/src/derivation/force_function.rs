@@ -17,7 +17,7 @@ use crate::numbers::rounding::{Random, Rounding, within};
 /// others.
 const PLACES: usize = 6;
 
-/// The greatest relative change of parameters, and distance of places.
+/// The greatest relative change in the parameters, and the greatest distance between places.
 const MOVED: f64 = 0.3;
 
 /// The remainder that rounding errors may leave, relative to the larger of the two sides.

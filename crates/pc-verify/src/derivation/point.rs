@@ -109,7 +109,7 @@ impl<'a, T: Number> Point<'a, T> {
         value.rounded(self.rounding)
     }
 
-    /// Checks that there is time left; every longer evaluation calls this.
+    /// Checks that there is time left; every lengthy evaluation calls this.
     fn within_limits(&self) -> Result<(), Irregular> {
         self.text.deadline.passed().map_or(Ok(()), |what| Err(Irregular::Spent { what }))
     }
@@ -394,7 +394,7 @@ impl<'a, T: Number> Point<'a, T> {
         Ok(self.round(function))
     }
 
-    /// ω as it is given, or as the vector of RᵀṘ.
+    /// ω as it is given, or the vector of the skew matrix RᵀṘ.
     pub(crate) fn angular_velocity(&self, body: &Body) -> Result<Vec<T>, Irregular> {
         match &body.turning {
             Some(Turning::AngularVelocity(omega)) => self.all(omega),

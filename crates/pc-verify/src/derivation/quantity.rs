@@ -15,7 +15,7 @@ pub(crate) enum Quantity {
     Column(usize),
     /// The η̇_s of a column.
     ColumnRate(usize),
-    /// The left-hand side of a constraint, or its rate: 0.
+    /// The left-hand side of a constraint, or its rate; both are 0.
     Zero,
     /// λ_α of the constraint with this number.
     Reaction(usize),

@@ -79,7 +79,7 @@ impl Contents {
     }
 }
 
-/// A reader of terms, with the contents of the names of a text as far as they are known.
+/// A reader of terms, which knows what some or all of the names of a text contain.
 struct Reader<'a> {
     text: &'a Text,
     n: usize,
@@ -169,7 +169,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The contents of the rate of a term with these contents.
+    /// What the rate of a term may contain, given what the term contains.
     fn rate(&self, inner: &Contents) -> Contents {
         let mut all = inner.clone();
         if inner.states || inner.velocities.len() > 0 {
