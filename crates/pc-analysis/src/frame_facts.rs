@@ -17,23 +17,23 @@ pub struct FrameFacts<'g> {
 /// Whether a quasi-velocity is the rate dπ/dt of a function π.
 #[derive(Clone, Debug)]
 pub enum QuasiVelocityKind<'g> {
-    /// It is the rate of this π; `None` if π was not found.
+    /// The quasi-velocity is the rate of this π; `None` if π was not found.
     RateOf(Option<Expr<'g>>),
-    /// It is not the rate of a function, as the bracket of this pair shows.
+    /// The quasi-velocity is not the rate of a function, as the bracket of this pair shows.
     RateOfNothing([String; 2]),
 }
 
 /// The n − rank b constraints that a frame imposes.
 #[derive(Clone, Debug)]
 pub enum FrameConstraints {
-    /// All of them can be written in the form f = const.
+    /// All the constraints can be written in the form f = const.
     Integrable {
-        /// Their number.
+        /// The number of constraints.
         count: usize,
-        /// Whether the f depend on time.
+        /// Whether the functions f depend on time.
         of_time: bool,
     },
-    /// Not all of them can be written in this form, as the bracket of this pair shows.
+    /// Not all the constraints can be written in the form f = const, as the bracket of this pair shows.
     NotIntegrable {
         /// Names of two quasi-velocities, or `t`.
         pair: [String; 2],

@@ -7,8 +7,8 @@
 //! rewriting, and no brackets as long as the frame determines them. If the rank of the frame is below the
 //! number of quasi-velocities, equations (9) are used in their original form, with the given brackets.
 //!
-//! [`verify`] compares both at random states that satisfy the constraints, in each form that the program offers. It
-//! compares ẋ, η̇ or ẏ, the multipliers, the energy with its rate, integrals and outputs.
+//! [`verify`] compares the two derivations at random states that satisfy the constraints, in each form that the
+//! program offers. It compares ẋ, η̇ or ẏ, the multipliers, the energy with its rate, integrals and outputs.
 //!
 //! ```
 //! use pc_model::{Builtin, Model};

@@ -18,14 +18,14 @@ const LONGEST: u32 = 4_000;
 /// The largest number of products of known integrals that are excluded from the results.
 const MOST_PRODUCTS: usize = 400;
 
-/// The largest number of factors without velocities in such a product.
+/// The largest number of factors without velocities in a product of known integrals.
 const MOST_OF_PLACE: u32 = 2;
 
 /// The largest degree in the parameters that coefficients may have.
 const MOST_PARAMETER_DEGREE: u32 = 4;
 
-/// The largest number of products of parameters and functions that have unknown coefficients in such
-/// polynomials.
+/// The largest number of products of parameters and functions that have unknown coefficients in a search for
+/// coefficients that are polynomials in the parameters.
 const MOST_WITH_PARAMETERS: usize = 300;
 
 /// The form of the integrals to be found: Σ a_jlm m_j p_l f_m with rational a_jlm, monomials m_j in η, monomials p_l
@@ -62,9 +62,9 @@ impl<'g> Integrals<'g> {
     /// coefficients; those of low degree come first. Integrals that are other functions of earlier ones, such as the
     /// third component of the Runge–Lenz vector, are marked as dependent.
     ///
-    /// They are sought for the present values of the parameters. If the coefficients are polynomials in the
-    /// parameters, up to a common factor, these polynomials are used and the integral is proved for all
-    /// values.
+    /// The integrals are sought for the present values of the parameters. If the coefficients are polynomials
+    /// in the parameters, up to a common factor, these polynomials are used and the integral is proved for
+    /// all values.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for a function of something that does not belong to the motion.

@@ -15,7 +15,7 @@ pub enum Conservation<'g> {
     /// Its rate vanishes identically, possibly only for the present values of the parameters, but the function jumps
     /// where a sign or a step in it jumps, which its rate does not show.
     ConservedBetweenJumps,
-    /// Its rate is not folded to zero by the graph.
+    /// The graph does not fold its rate to zero.
     Changing(Expr<'g>),
 }
 

@@ -72,14 +72,15 @@ pub struct FoundEquilibrium {
     pub energy: f64,
     /// The first approximation without cyclic coordinates.
     pub linearization: Linearization,
-    /// The results on its stability.
+    /// The results on the stability of the equilibrium.
     pub motion: NearbySteadyMotion,
-    /// The dimension of its family, not counting the dimensions due to cyclic coordinates; 0 if it is isolated, even if the
-    /// first approximation has a kernel, as at the minimum of x⁴.
+    /// The dimension of the family of the equilibrium, not counting the dimensions due to cyclic coordinates; 0 if it
+    /// is isolated, even if the first approximation has a kernel, as at the minimum of x⁴.
     pub family: usize,
     /// The number of members of the family that were found.
     pub members: usize,
-    /// The greatest distance of a member from this one, as a difference of components relative to 1 + |y|.
+    /// The greatest distance of a member of the family from this equilibrium, as a difference of components
+    /// relative to 1 + |y|.
     reach: f64,
 }
 
@@ -87,8 +88,8 @@ pub struct FoundEquilibrium {
 /// distance of it, relative to 1 + |y|, where the rates are below the tolerance of the method.
 const FLAT: f64 = 0.02;
 
-/// The distance from an equilibrium, relative to 1 + |y|, at which others of its family are looked for, and the
-/// number of directions.
+/// The distance from an equilibrium, relative to 1 + |y|, at which the search looks for others of the same
+/// family, and the number of directions in which it looks.
 const BESIDE: f64 = 0.3;
 const DIRECTIONS: usize = 3;
 
@@ -98,8 +99,8 @@ const MOST_STEPS: usize = 60;
 /// If the slopes of the rates exceed those at the start by this factor, the coordinates are singular.
 const MOST_STEEPER: f64 = 1e6;
 
-/// A small rate above this fraction of |∂f/∂y| (1 + |y|) does not indicate a nearby zero: it is small because
-/// it decays, like a force at a great distance.
+/// A small rate above this fraction of |∂f/∂y| (1 + |y|) does not indicate a nearby zero: the rate is small
+/// because it decays, like a force at a great distance.
 const FALLING: f64 = 1e-3;
 
 /// The largest relative difference of the energies within one family.

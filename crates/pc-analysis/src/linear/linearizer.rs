@@ -22,7 +22,7 @@ pub struct Leaf<'g> {
     /// The system with all quasi-velocities, including those that constraints make vanish: its frame is
     /// integrable.
     pub whole: System<'g>,
-    /// The functions f in the conditions f(x) = 0 that constraints imply.
+    /// The functions f in the conditions f(x) = 0 that the constraints imply.
     pub positions: Vec<Expr<'g>>,
     /// Functions of the coordinates alone that keep their initial values, such as the length of a quaternion.
     pub kept: Vec<Expr<'g>>,

@@ -7,8 +7,8 @@ use crate::measures::invariant_measure::{
     InvariantMeasure, candidates, determinants_of_blocks, invariant_measure, simple_factors,
 };
 
-/// The largest number of free quasi-velocities of a motion for which a measure is sought if no theorem gives
-/// one.
+/// The largest number of free quasi-velocities for which a measure of the motion is sought if no theorem
+/// gives one.
 const MOST_VELOCITIES: usize = 6;
 
 /// The largest number of factors of a density that are tried together.
@@ -23,9 +23,9 @@ const LONGEST: u32 = 4_000;
 pub enum MeasureSearch<'g> {
     /// This measure is invariant.
     Found(PhaseMeasure<'g>),
-    /// None was found.
+    /// No invariant measure was found.
     None,
-    /// It depends on forces that are computed outside the model.
+    /// The measure depends on forces that are computed outside the model.
     External,
     /// No theorem gives one, and the equations are too long to search.
     TooLong,
@@ -34,7 +34,8 @@ pub enum MeasureSearch<'g> {
 /// A measure on the phase space of (x, y) and the first-order states that is invariant under the motion.
 #[derive(Clone, Debug)]
 pub struct PhaseMeasure<'g> {
-    /// Whether it is Liouville's, which the frame of a holonomic system determines whatever the Lagrangian.
+    /// Whether the measure is Liouville's, which the frame of a holonomic system determines whatever the
+    /// Lagrangian.
     pub liouville: bool,
     /// The density N of N dx dy, positive at the start; none if 1/det b or det(∂f/∂x_D)/det b_I is not a short
     /// expression.
@@ -58,9 +59,9 @@ impl<'g> MeasureSearch<'g> {
     /// and rank b = k, the density is N = 1/det b, with which N dx dy is Liouville's dx dp: y = bᵀp. If n − k
     /// functions f(t, x) are constant, then for any choice of as many dependent coordinates x_D, x_I being
     /// the others, the density is N = det(∂f/∂x_D)/det b_I: Liouville's on each surface f = const. If no f
-    /// are known, N is sought as a product of powers of coordinates, their sines and cosines. For dx dη it is
-    /// multiplied by det M. `positions` are functions f of a holonomic system, in addition to declared
-    /// integrals that depend on the position alone; `None` means that the system is not holonomic.
+    /// are known, N is sought as a product of powers of coordinates, their sines and cosines. For dx dη the
+    /// density is multiplied by det M. `positions` are functions f of a holonomic system, in addition to
+    /// declared integrals that depend on the position alone; `None` means that the system is not holonomic.
     ///
     /// Otherwise a density with these factors and those of [`invariant_measure`] is sought, then one that has
     /// momenta among its factors as well; this search is omitted for more than six quasi-velocities and for

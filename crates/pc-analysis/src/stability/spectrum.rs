@@ -9,9 +9,11 @@ use crate::numeric::dense::{eigenvalues, norm, product};
 /// The verdict on the stability of an equilibrium or a steady motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Neighbouring motions approach it: all real parts are negative (Lyapunov's first method).
+    /// Neighbouring motions approach the steady motion: all real parts are negative (Lyapunov's first
+    /// method).
     AsymptoticallyStable,
-    /// Neighbouring motions stay close: an integral has a strict extremum there (Lyapunov's second method).
+    /// Neighbouring motions stay close to the steady motion: an integral has a strict extremum there
+    /// (Lyapunov's second method).
     Stable,
     /// Some neighbouring motion departs: a real part is positive (Lyapunov's first method).
     Unstable,

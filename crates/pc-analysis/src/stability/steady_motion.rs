@@ -57,7 +57,7 @@ impl SteadyOptions {
         SteadyOptions { fixed: names.into_iter().map(Into::into).collect(), ..self }
     }
 
-    /// Whether that component keeps its value.
+    /// Whether the component keeps its value.
     pub(crate) fn holds(&self, name: &str) -> bool {
         self.fixed.iter().any(|fixed| fixed == name)
     }

@@ -48,7 +48,7 @@ pub struct FoundSteadyMotion {
     /// The motion.
     pub motion: NearbySteadyMotion,
     /// The dimension of the family of steady motions with the same integrals, of which this is the nearest to the
-    /// start; 0 if it is isolated.
+    /// start; 0 if the motion is isolated.
     pub family: usize,
 }
 
@@ -144,7 +144,7 @@ struct Found {
 }
 
 impl Found {
-    /// Searches from one guess, and adds the result if it is new.
+    /// Searches from one guess, and adds the motion that is found if it is new.
     fn look<'g>(
         &mut self,
         seeker: &Seeker<'_, 'g>,

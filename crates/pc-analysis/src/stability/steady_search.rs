@@ -50,7 +50,7 @@ pub struct NearbySteadyMotion {
 pub struct EnergyCriterion {
     /// Stable, or undecided.
     pub verdict: Verdict,
-    /// Its variables, unless they are all components that are not cyclic.
+    /// The variables of the criterion, unless they are all components that are not cyclic.
     pub variables: Option<Vec<String>>,
 }
 
@@ -59,14 +59,14 @@ pub struct EnergyCriterion {
 pub enum Stability {
     /// The first approximation decides.
     ByFirstApproximation(Verdict),
-    /// It is stable by the second variation of the energy.
+    /// The motion is stable by the second variation of the energy.
     BySecondVariation {
-        /// Its variables, unless they are all components that are not cyclic.
+        /// The variables of the criterion, unless they are all components that are not cyclic.
         variables: Option<Vec<String>>,
     },
-    /// By the first approximation it is asymptotically stable, except in neutral directions.
+    /// By the first approximation the motion is asymptotically stable, except in neutral directions.
     AsymptoticBut {
-        /// Their number.
+        /// The number of neutral directions.
         directions: usize,
     },
     /// No criterion decides.
@@ -88,7 +88,7 @@ pub enum SteadySearch {
     Nonlinear,
     /// The state has too many components.
     TooLarge {
-        /// Their number.
+        /// The number of neutral directions.
         components: usize,
     },
     /// Newton's method did not converge, or converged far from the start.

@@ -36,7 +36,8 @@ impl Form {
         Form::Hamel,
     ];
 
-    /// The variables of its state; none for the forms in velocities, which serve only for printing.
+    /// The variables of the state in this form; none for the forms in velocities, which serve only for
+    /// printing.
     pub fn variables(self) -> Option<Variables> {
         Some(match self {
             Form::Poincare => Variables::QuasiVelocities,

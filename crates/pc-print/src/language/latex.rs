@@ -26,7 +26,7 @@ pub(crate) fn page(heading: &str, sheet: &Sheet<'_>, layout: &Layout, page: &Gra
     text + "\\endgroup\n"
 }
 
-/// The remark on a part.
+/// The remark that belongs to a part.
 pub(crate) fn remark(sheet: &Sheet<'_>, heading: Heading) -> Option<&'static str> {
     match heading {
         Heading::Energy | Heading::Hamiltonian => sheet.energy_remark,
@@ -34,7 +34,7 @@ pub(crate) fn remark(sheet: &Sheet<'_>, heading: Heading) -> Option<&'static str
     }
 }
 
-/// The parts, each with its display unless it has nothing to display.
+/// The parts, each with its display, except parts that have nothing to display.
 pub(crate) fn displays<'a, 'p>(
     operators: &'a [String],
     layout: &'a Layout,

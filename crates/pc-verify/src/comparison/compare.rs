@@ -18,8 +18,8 @@ use crate::error::{Disagreement, Irregular, VerifyError};
 use crate::numbers::rounding::{Rounding, UNIT, within};
 use crate::numbers::sized::Sized;
 
-/// Velocities whose difference, relative to the largest, exceeds this are distinct; momenta whose difference
-/// does not exceed it are equal.
+/// Velocities whose difference, relative to the largest, exceeds this value are distinct; momenta whose
+/// difference does not exceed it are equal.
 const OTHER: f64 = 1e-9;
 
 /// The greatest factor by which rounding errors of the first derivation may exceed those of the second: forms
@@ -44,8 +44,8 @@ impl Default for Options {
 }
 
 /// Derives an assembled model a second time and compares, at random states that satisfy the constraints, ẋ, η̇ or ẏ, λ,
-/// the energy and its rate, integrals and outputs. This is done for the equations that are integrated, in
-/// quasi-velocities and in momenta, and for those that are emitted as source.
+/// the energy and its rate, integrals and outputs. The comparison covers the equations that are integrated, in
+/// quasi-velocities and in momenta, and those that are emitted as source.
 ///
 /// # Errors
 /// [`VerifyError::Disagreement`] with the quantity, its two values and the state; [`VerifyError::Model`] if the first

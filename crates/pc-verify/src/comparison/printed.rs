@@ -52,10 +52,10 @@ pub(crate) struct Printed<'g> {
 
 /// Quasi-velocities on the page that are not those of the model.
 struct Change<'g> {
-    /// Their symbols, and the symbols of their rates.
+    /// The symbols of these quasi-velocities, and the symbols of their rates.
     symbols: Vec<Expr<'g>>,
     accelerations: Vec<Expr<'g>>,
-    /// Their definitions in terms of the independent quasi-velocities of the model.
+    /// The definitions of these quasi-velocities in terms of the independent quasi-velocities of the model.
     definitions: Vec<Expr<'g>>,
     /// The rates of the independent quasi-velocities of the model, in terms of the new quasi-velocities and
     /// their rates.

@@ -19,7 +19,7 @@ const CERTAIN: f64 = 0.1;
 /// of that entry.
 const NOISE: f64 = 1e-13;
 
-/// Pivots below this fraction of the largest make equations singular.
+/// Pivots below this fraction of the largest show that equations are singular.
 const PIVOT: f64 = 1e-13;
 
 /// The matrix with these rows, which have `columns` entries each.
@@ -72,8 +72,8 @@ fn blocks(a: &DMatrix<f64>) -> Vec<Block> {
     blocks
 }
 
-/// A⁻ with A A⁻ A = A and A⁻ A A⁻ = A⁻, and the rank. A⁻ r solves A z = r if this has solutions, whatever the
-/// sizes of the equations and the units of the unknowns.
+/// A⁻ with A A⁻ A = A and A⁻ A A⁻ = A⁻, and the rank. A⁻ r solves A z = r if this equation has solutions,
+/// whatever the sizes of the equations and the units of the unknowns.
 pub(crate) fn solving_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, usize)> {
     let rows = row_weights(a, &vec![1.0; a.ncols()]);
     let columns = column_weights(a, &rows);

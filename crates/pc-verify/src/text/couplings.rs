@@ -135,7 +135,8 @@ impl<'a> Reader<'a> {
         all.states = true;
     }
 
-    /// Adds a velocity to `all`: it is one of w, or, if it is given `by_terms`, stands for their contents.
+    /// Adds a velocity to `all`: the velocity is one of w or, if it is given `by_terms`, stands for the
+    /// contents of those terms.
     fn add_velocity(&self, i: usize, by_terms: bool, all: &mut Contents) {
         match by_terms {
             true => self.add_known(self.moving[i].as_ref(), all),

@@ -1,8 +1,8 @@
 //! Bodies on joints, as terms: their positions, their rotations, and the rates of the joints' coordinates.
 //!
 //! A body has thirty definitions: the constant rotation of its joint, the rotation by the joint, its own
-//! rotation, and its position; a point has three. They follow the constant definitions of the text, which
-//! joints may contain, and precede the others, which may contain points.
+//! rotation, and its position; a point has three. These definitions follow the constant definitions of the
+//! text, which joints may contain, and precede the others, which may contain points.
 
 use std::collections::HashSet;
 
