@@ -28,7 +28,7 @@ impl<'g> Rates<'g> {
     /// [`linear_relations`](pc_expr::Graph::linear_relations) for integrals that may be missed.
     ///
     /// # Errors
-    /// [`AnalysisError::NotAVariable`] for a function of something that does not belong to the motion.
+    /// [`AnalysisError::NotAVariable`] for a function of a symbol that does not belong to the motion.
     pub fn integrals_among(&self, functions: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, AnalysisError> {
         let rates: Vec<Vec<Expr<'g>>> = self.of_all(functions)?.into_iter().map(|rate| vec![rate]).collect();
         let relations = self.graph.linear_relations(&rates);
@@ -39,7 +39,7 @@ impl<'g> Rates<'g> {
     /// known ones; those of low degree come first.
     ///
     /// # Errors
-    /// [`AnalysisError::NotAVariable`] for a function of something that does not belong to the motion.
+    /// [`AnalysisError::NotAVariable`] for a function of a symbol that does not belong to the motion.
     ///
     /// ```
     /// use pc_analysis::Rates;

@@ -15,7 +15,7 @@ pub struct Integral<'g> {
     pub origin: Origin,
     /// The verdict on its rate.
     pub verdict: ConservationVerdict<'g>,
-    /// Whether an event may change it.
+    /// Whether an event may change the integral.
     pub jumps: bool,
     /// Whether it is known to be a function of the integrals before it in the list.
     pub dependent: bool,
@@ -28,18 +28,19 @@ pub enum Origin {
     Declared,
     /// The integral is declared, and is a function of Casimirs.
     DeclaredCasimir,
-    /// It is the energy formed with the velocities in the equations.
+    /// The integral is the energy formed with the velocities in the equations.
     Energy,
-    /// It is the energy formed with all velocities, while the equations contain only independent ones.
+    /// The integral is the energy formed with all velocities, while the equations contain only independent
+    /// ones.
     EnergyOfAll,
-    /// It is the momentum a_s y_s of a [`CyclicDisplacement`](crate::CyclicDisplacement).
+    /// The integral is the momentum a_s y_s of a [`CyclicDisplacement`](crate::CyclicDisplacement).
     CyclicDisplacement {
         /// a_1..a_k
         coefficients: Vec<Number>,
     },
-    /// It is a Casimir of the bracket (12).
+    /// The integral is a Casimir of the bracket (12).
     Casimir,
-    /// It was found by an ansatz.
+    /// The integral was found by an ansatz.
     Found,
 }
 

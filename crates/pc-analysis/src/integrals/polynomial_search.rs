@@ -67,7 +67,7 @@ impl<'g> Integrals<'g> {
     /// all values.
     ///
     /// # Errors
-    /// [`AnalysisError::NotAVariable`] for a function of something that does not belong to the motion.
+    /// [`AnalysisError::NotAVariable`] for a function of a symbol that does not belong to the motion.
     ///
     /// ```
     /// use pc_analysis::{Integrals, PolynomialAnsatz};

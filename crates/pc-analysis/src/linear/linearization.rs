@@ -12,8 +12,8 @@ use crate::stability::spectrum::Spectrum;
 use crate::stability::steady_motion::{SteadyOptions, first_approximation};
 
 /// δẏ = A δy + B δu, δh = C δy + D δu for small deviations of the reduced state: independent coordinates of
-/// the states that satisfy the constraints, independent quasi-velocities, and first-order states. Inputs
-/// deviate from their present values.
+/// the states that satisfy the constraints, independent quasi-velocities, and first-order states. Deviations
+/// of inputs are measured from their present values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linearization {
     /// Time.
@@ -111,7 +111,7 @@ impl Linearizer {
     /// through this state.
     ///
     /// # Errors
-    /// [`ShapeError`](pc_mech::ShapeError); if f is not defined, as [`rhs`](pc_mech::VectorField::rhs).
+    /// [`ShapeError`](pc_mech::ShapeError); the errors of [`rhs`](pc_mech::VectorField::rhs) if f is not defined.
     pub fn at(&mut self, t: f64, state: &[f64]) -> Result<Linearization, AnalysisError> {
         shape("the state", state.len(), self.names().len())?;
         let rates = self.motion.rates(t, state)?;
@@ -127,7 +127,7 @@ impl Linearizer {
     /// them.
     ///
     /// # Errors
-    /// [`ShapeError`](pc_mech::ShapeError); if f is not defined, as [`rhs`](pc_mech::VectorField::rhs).
+    /// [`ShapeError`](pc_mech::ShapeError); the errors of [`rhs`](pc_mech::VectorField::rhs) if f is not defined.
     pub fn components(
         &mut self,
         t: f64,

@@ -187,8 +187,8 @@ impl SteadyMotion {
 /// Its [`Spectrum`] is that of all components, including cyclic coordinates.
 ///
 /// # Errors
-/// [`ShapeError`](pc_mech::ShapeError); [`EvaluationError::NotCompiled`] without the Jacobian; if f is not
-/// defined, as [`rhs`](VectorField::rhs).
+/// [`ShapeError`](pc_mech::ShapeError); [`EvaluationError::NotCompiled`] without the Jacobian; the errors of
+/// [`rhs`](VectorField::rhs) if f is not defined.
 pub fn first_approximation(motion: &mut Motion, t: f64, y: &[f64]) -> Result<Matrix<f64>, AnalysisError> {
     let n = motion.dim();
     shape("the state", y.len(), n)?;

@@ -265,7 +265,7 @@ impl<'a, 'g> Seeker<'a, 'g> {
         Ok(Reachable::of(found, &kept, &normals)?)
     }
 
-    /// The length of the vector of those components of the start that are not cyclic.
+    /// The length of the vector formed by those components of the start that are not cyclic.
     fn size(&self, found: &SteadyMotion, start: &[f64]) -> f64 {
         self.kept(found, start).iter().map(|(_, _, start)| start * start).sum::<f64>().sqrt()
     }
@@ -279,7 +279,7 @@ impl<'a, 'g> Seeker<'a, 'g> {
 }
 
 /// The differentials of the integrals with respect to the components that are not cyclic. An integral that
-/// contains a cyclic coordinate is left out: it is not a function of these components alone.
+/// contains a cyclic coordinate is left out: it is not a function of the other components alone.
 fn differentials<'g>(
     system: &System<'g>,
     found: &SteadyMotion,

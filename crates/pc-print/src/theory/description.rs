@@ -55,7 +55,7 @@ pub(crate) enum Verdict {
     },
     /// A motion is not stable: others depart from it.
     Unstable {
-        /// The largest real part of an eigenvalue.
+        /// The largest real part of any eigenvalue.
         growth: f64,
     },
     /// Neither.

@@ -101,7 +101,7 @@ impl Ink {
     /// The number of distinguishable curves.
     pub(crate) const CURVES: usize = COLOURS.len();
 
-    /// Its red, green and blue components, for a white background.
+    /// The red, green and blue components of its colour on a white background.
     pub fn colour(self) -> [u8; 3] {
         match self {
             Ink::Text | Ink::Rod => [29, 36, 48],

@@ -1,4 +1,4 @@
-//! The comparison of derivatives of the equations with differences of the rates of the second derivation.
+//! The comparison of derivatives of the equations with differences of the rates in the second derivation.
 
 use pc_mech::VectorField;
 use pc_model::{Assembly, Flow, Model};
@@ -46,7 +46,8 @@ const SMOOTH: f64 = 1.5;
 const DOUBT: f64 = 10.0;
 
 impl Second {
-    /// Compares derivatives along a direction with differences of the second derivation's rates at a state of a flow of the model.
+    /// Compares derivatives along a direction, at a state of a flow of the model, with differences of the rates in the
+    /// second derivation.
     ///
     /// Derivatives that differences do not determine, at corners and where rounding errors are large, are not
     /// compared; neither are derivatives of a large model.

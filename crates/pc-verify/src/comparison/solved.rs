@@ -313,7 +313,7 @@ t_end = -0.5
         assert_eq!(agreement.states, 100);
     }
 
-    /// An error of one part in 1e8 of a mass is an error of one part in 1e10 of the reaction to which the
+    /// An error of one part in 1e8 in a mass is an error of one part in 1e10 in the reaction to which the
     /// mass contributes.
     #[test]
     fn a_reaction_of_another_mass_is_found() {

@@ -15,7 +15,7 @@ use crate::numbers::sized::Sized;
 /// difference due to a wrong term stays the same to as many digits.
 const ASIDE: f64 = 1e-9;
 
-/// The number of other states.
+/// The number of other states that are tried.
 const STATES: u64 = 4;
 
 /// A difference of at most this many jumps is attributed to rounding errors.

@@ -156,8 +156,8 @@ fn pseudo_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, usize)> {
     Some((inverse, rank))
 }
 
-/// The pseudo-inverse by orthogonal elimination; none if the rank is in doubt: singular values are at least
-/// 1/‖A⁺‖, and at most the norm of the full matrix, `largest`.
+/// The pseudo-inverse computed by orthogonal elimination; none if the rank is in doubt: singular values are
+/// at least 1/‖A⁺‖, and at most the norm of the full matrix, `largest`.
 fn of_full_rank(a: &DMatrix<f64>, largest: f64) -> Option<(DMatrix<f64>, usize)> {
     let rank = a.nrows().min(a.ncols());
     if rank == 0 {
@@ -173,7 +173,7 @@ fn of_full_rank(a: &DMatrix<f64>, largest: f64) -> Option<(DMatrix<f64>, usize)>
     Some((if is_tall { inverse } else { inverse.transpose() }, rank))
 }
 
-/// The pseudo-inverse by singular values, which also show the rank.
+/// The pseudo-inverse computed from singular values, which also show the rank.
 fn by_singular_values(blocks: &[(Block, DMatrix<f64>)]) -> Option<Vec<(DMatrix<f64>, usize)>> {
     let parts: Vec<_> =
         blocks.iter().map(|(_, part)| (!part.is_empty()).then(|| part.clone().svd(true, true))).collect();

@@ -132,7 +132,7 @@ impl<'a> Tree<'a> {
         Ok(all)
     }
 
-    /// The rates of the coordinates of joints, with the names of these.
+    /// The rates of the coordinates of joints, with the names of the coordinates.
     pub(crate) fn rates(&self, names: &Names) -> Result<Vec<(String, Term)>, Unable> {
         let mut all = Vec::new();
         for body in &self.document.tree {
