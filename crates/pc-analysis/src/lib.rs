@@ -126,11 +126,12 @@
 //! # Steady motions and stability
 //!
 //! [`SteadyMotion::near`] finds states in which all but the cyclic coordinates are at rest, with their first
-//! approximation. Its [`Spectrum`] shows instability, or asymptotic stability; the [`SecondVariation`] of the energy
-//! under constant integrals shows stability (Routh; Chetaev's bundle of integrals). Each gives a [`Verdict`], which
-//! may be undecided. [`SteadySearch::near`] finds the steady motion near a start with the same values of the
-//! integrals, and applies both criteria; [`SteadyMotions::search`] finds steady motions from many starts, and the
-//! equilibria. A [`Variation`] is a motion together with deviations from it, δ̇ = (∂f/∂y) δ.
+//! approximation. The [`Spectrum`] of the first approximation shows instability, or asymptotic stability; the
+//! [`SecondVariation`] of the energy under constant integrals shows stability (Routh; Chetaev's bundle of
+//! integrals). Each gives a [`Verdict`], which may be undecided. [`SteadySearch::near`] finds the steady motion near
+//! a start with the same values of the integrals, and applies both criteria; [`SteadyMotions::search`] finds steady
+//! motions from many starts, and the equilibria. A [`Variation`] is a motion together with deviations from it, δ̇ =
+//! (∂f/∂y) δ.
 //!
 //! ```
 //! use pc_analysis::{SecondVariation, Spectrum, Verdict, first_approximation};

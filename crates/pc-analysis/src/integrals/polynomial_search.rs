@@ -58,7 +58,7 @@ pub enum AnsatzSearch {
 }
 
 impl<'g> Integrals<'g> {
-    /// Adds the integrals of an ansatz to those already known, unless they are polynomials of known ones with rational
+    /// Adds the integrals of an ansatz to those already known, unless they are polynomials in known ones with rational
     /// coefficients; those of low degree come first. Integrals that are other functions of earlier ones, such as the
     /// third component of the Runge–Lenz vector, are marked as dependent.
     ///
@@ -287,8 +287,8 @@ fn is_combination<'g>(graph: &'g Graph, of: &[Expr<'g>], f: Expr<'g>) -> bool {
 /// f_i up to a factor, if there is one whose coefficients are polynomials of low degree in the parameters of
 /// its rates; of several, the one of lowest degree.
 ///
-/// It is unique up to its factor: all but the last of the functions in a relation in echelon form are
-/// independent, for these values and therefore for almost all.
+/// This integral is unique up to its factor: all but the last of the functions in a relation in echelon form
+/// are independent, for these values and therefore for almost all.
 fn with_parameters<'g>(
     search: &Search<'_, 'g>,
     functions: &[Expr<'g>],

@@ -8,14 +8,14 @@ use crate::error::{AnalysisError, check_variables};
 /// The verdict on whether a function is constant along the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Conservation<'g> {
-    /// Its rate vanishes identically: it is an integral.
+    /// The rate of the function vanishes identically: the function is an integral.
     Conserved,
-    /// Its rate vanishes identically for the present values of the parameters.
+    /// The rate of the function vanishes identically for the present values of the parameters.
     ConservedHere,
-    /// Its rate vanishes identically, possibly only for the present values of the parameters, but the function jumps
-    /// where a sign or a step in it jumps, which its rate does not show.
+    /// The rate of the function vanishes identically, possibly only for the present values of the parameters, but
+    /// the function jumps where a sign or a step in it jumps, which the rate does not show.
     ConservedBetweenJumps,
-    /// The graph does not fold its rate to zero.
+    /// The graph does not fold the rate of the function to zero.
     Changing(Expr<'g>),
 }
 

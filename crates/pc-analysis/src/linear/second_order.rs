@@ -29,7 +29,7 @@ pub struct SecondOrder {
     pub input: Matrix<f64>,
 }
 
-/// The reasons why there are no such equations.
+/// The reasons why there are no equations of the second order.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoSecondOrder {
     /// The velocities change at the state.
@@ -60,7 +60,7 @@ pub enum NoSecondOrder {
     /// First-order states act on the velocities.
     #[error("the first-order state {state} acts on the velocities")]
     FirstOrderState {
-        /// The first such state.
+        /// The name of the first of the states that act on the velocities.
         state: String,
     },
 }

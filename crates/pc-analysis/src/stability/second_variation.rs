@@ -48,8 +48,8 @@ impl SecondVariation {
     /// With d(H + λ_j I_j) = 0 there, where λ is found by least squares, a second variation that is definite
     /// on the common kernel of the dI_j proves that the steady motion is stable: H + λ_j I_j ± κ (I_j −
     /// I_j(y))² has a strict extremum at y for large κ. This does not require the dI_j to be independent. If
-    /// the dI_j are linearly dependent, the λ_j are not determined, and a search is made for values for which
-    /// the form is definite.
+    /// the dI_j are linearly dependent, the λ_j are not determined, and values are sought for which the form
+    /// is definite.
     ///
     /// Stability means stability with respect to the [variables](SecondVariation::variables). Redundant
     /// coordinates are variables: their constraints, such as γ² = 1, must be among the integrals.

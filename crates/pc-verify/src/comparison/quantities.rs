@@ -294,8 +294,8 @@ impl Derivation {
     }
 }
 
-/// Raises sizes: quantities from one elimination are uncertain by some rounding errors of the largest of
-/// them, or of their natural size.
+/// Raises sizes: quantities that result from the same elimination are uncertain by some rounding errors of
+/// the largest of these quantities, or of their natural size.
 fn raise(quantities: &mut [Sized], wanted: &[Quantity], natural_size: impl Fn(&Quantity) -> f64) {
     for (quantity, wanted) in quantities.iter_mut().zip(wanted) {
         quantity.size = quantity.size.max(SHARED * natural_size(wanted));

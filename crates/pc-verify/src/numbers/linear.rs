@@ -72,7 +72,7 @@ fn blocks(a: &DMatrix<f64>) -> Vec<Block> {
     blocks
 }
 
-/// A⁻ with A A⁻ A = A and A⁻ A A⁻ = A⁻, and the rank. A⁻ r solves A z = r if this equation has solutions,
+/// A⁻ with A A⁻ A = A and A⁻ A A⁻ = A⁻, and the rank. A⁻ r solves A z = r if this system has solutions,
 /// whatever the sizes of the equations and the units of the unknowns.
 pub(crate) fn solving_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, usize)> {
     let rows = row_weights(a, &vec![1.0; a.ncols()]);

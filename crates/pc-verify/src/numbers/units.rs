@@ -39,8 +39,8 @@ impl Units {
     }
 }
 
-/// The units for some values: 1, or a small value itself; a value of 0 gives no information and is given the
-/// largest unit of the others.
+/// The units for some values: 1, or a small value itself; a value of 0 carries no information and is assigned
+/// the largest unit of the others.
 fn units(values: &[f64]) -> Vec<f64> {
     let known = |value: f64| (value != 0.0).then_some(if value < SMALL { value } else { 1.0 });
     let largest = values.iter().filter_map(|value| known(value.abs())).reduce(f64::max).unwrap_or(1.0);

@@ -346,7 +346,7 @@ fn about(axis: &[Term], angle: &Term) -> Vec<Term> {
     unit().into_iter().zip(s).zip(square).map(entry).collect()
 }
 
-/// The sine and cosine of an angle. They are exact for a number that is a multiple of π/2 up to rounding:
+/// The sine and cosine of an angle. Both are exact for a number that is a multiple of π/2 up to rounding:
 /// otherwise the cosine of the double nearest to π/2 could be the only term left when others vanish, and
 /// would be mistaken for their size.
 fn sine_and_cosine(angle: &Term) -> [Term; 2] {
