@@ -17,7 +17,7 @@ pub enum AnalysisError {
     NoSteadyMotion {
         /// √Σ f_i² over the components that are not cyclic.
         residual: f64,
-        /// The number of steps that were made.
+        /// The number of steps taken.
         iterations: usize,
         /// Time.
         t: f64,
@@ -68,8 +68,7 @@ pub enum AnalysisError {
     /// A steady motion was requested for equations that depend on time.
     #[error("the equations depend on time explicitly, so that no state is steady")]
     DependsOnTime,
-    /// A steady motion was requested of equations whose coordinates are not independent and satisfy unknown
-    /// relations.
+    /// A steady motion was requested for equations whose coordinates satisfy relations that are not known.
     #[error(
         "the start is not steady, as rates of norm {} show, and the functions of the coordinates that the frame keeps \
          are not known, so that no other state can be reached from it",
@@ -131,7 +130,7 @@ pub enum AnalysisError {
     NoPosition {
         /// |∂S/∂α − β|
         residual: f64,
-        /// The number of steps that were made.
+        /// The number of steps taken.
         iterations: usize,
         /// Time.
         t: f64,
@@ -166,12 +165,12 @@ impl From<Failure> for AnalysisError {
     }
 }
 
-/// An error unless `found` is `expected`.
+/// Returns an error unless `found` equals `expected`.
 pub(crate) fn shape(what: &'static str, found: usize, expected: usize) -> Result<(), AnalysisError> {
     if found == expected { Ok(()) } else { Err(MechError::from(ShapeError { what, found, expected }).into()) }
 }
 
-/// An error for the first symbol in `functions` that is not `known`.
+/// Returns an error that names the first symbol in `functions` that is not `known`.
 pub(crate) fn check_variables<'g>(
     what: &'static str,
     graph: &'g Graph,

@@ -1,4 +1,4 @@
-//! Properties of the frame and its brackets, without a Lagrangian.
+//! Properties of the frame and its brackets, which need no Lagrangian.
 
 use pc_algebra::{Holonomy, Integrability};
 use pc_mech::{Expr, Neighbourhood, System};
@@ -10,30 +10,30 @@ pub struct FrameFacts<'g> {
     pub holonomy: Vec<(String, QuasiVelocityKind<'g>)>,
     /// Whether η = ẋ.
     pub lagrangian: bool,
-    /// The constraints that hold by the frame alone, if n > rank b.
+    /// The constraints that the frame alone imposes, if n > rank b.
     pub constraints: Option<FrameConstraints>,
 }
 
 /// Whether a quasi-velocity is the rate dπ/dt of a function π.
 #[derive(Clone, Debug)]
 pub enum QuasiVelocityKind<'g> {
-    /// It is the rate of this π; `None` if π was not found.
+    /// The quasi-velocity is the rate of this π; `None` if π was not found.
     RateOf(Option<Expr<'g>>),
-    /// It is not the rate of a function, because of the bracket of this pair.
+    /// The quasi-velocity is not the rate of a function, as the bracket of this pair shows.
     RateOfNothing([String; 2]),
 }
 
 /// The n − rank b constraints that a frame imposes.
 #[derive(Clone, Debug)]
 pub enum FrameConstraints {
-    /// All of them can be written in the form f = const.
+    /// All the constraints can be written in the form f = const.
     Integrable {
-        /// Their number.
+        /// The number of constraints.
         count: usize,
-        /// Whether the f depend on time.
+        /// Whether the functions f depend on time.
         of_time: bool,
     },
-    /// Not all of them can be written in this form, because of the bracket of this pair.
+    /// Not all the constraints can be written in the form f = const, as the bracket of this pair shows.
     NotIntegrable {
         /// Names of two quasi-velocities, or `t`.
         pair: [String; 2],

@@ -1,6 +1,6 @@
 //! Integrals of a motion: rates along it, momenta of cyclic displacements, integrals from an ansatz.
 //!
-//! From the equations follow the rates of functions, with verdicts, and integrals that are proved. `rates`
+//! The equations yield the rates of functions, with verdicts, and integrals that are proved. `rates`
 //! differentiates along the motion, `cyclic_displacements` finds integrals that are momenta, and `ansatz`
 //! finds those of a given form, composed of the products in `polynomials`; `integral` is a function with its
 //! verdict, `search` combines all of these with Casimirs, and `polynomial_search` adds integrals of a given

@@ -1,9 +1,10 @@
 //! Analysis of motions without integrating them: integrals, steady motions, stability, invariant measures.
 //!
-//! Numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994), with its misprints
-//! corrected; the conventions are those of [`pc_mech`]. The analysis applies to its [`System`](pc_mech::System),
-//! to its [`Equations`](pc_mech::Equations) (9) and [`Canonical`](pc_mech::Canonical) equations (10), (11), and to
-//! the [`Motion`](pc_mech::Motion) into which these are compiled. Results are proved unless they are marked open.
+//! Equation numbers in brackets are those of V. V. Rumyantsev, *On Poincaré–Chetaev's equations* (1994), with its
+//! misprints corrected; the conventions are those of [`pc_mech`]. The analysis applies to its
+//! [`System`](pc_mech::System), to its [`Equations`](pc_mech::Equations) (9) and [`Canonical`](pc_mech::Canonical)
+//! equations (10), (11), and to the [`Motion`](pc_mech::Motion) into which these are compiled. Results are proved
+//! unless they are marked open.
 //!
 //! # Frames
 //!
@@ -16,7 +17,7 @@
 //! (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m (12).
 //!
 //! [`PoissonBracket::new`] is this bracket; for all other systems [`PoissonBracket::extended`] adds time and
-//! its momentum y_0, with H + y_0 in place of H. Functions that commute with everything are
+//! its momentum y_0, with H + y_0 in place of H. Functions that commute with all others are
 //! [Casimirs](PoissonBracket::casimirs). The bracket of two integrals is an integral (Poisson's theorem);
 //! [`PoissonBracket::closure`] adds the new ones.
 //!
@@ -63,12 +64,12 @@
 //! # Integrals
 //!
 //! [`System::energy_rate`](pc_mech::System::energy_rate) is dH/dt = X_0 H + c_0r^m η_r y_m + Q_s η_s.
-//! [`CyclicDisplacement::all`] finds the a_s X_s whose momentum a_s y_s the motion conserves; for η = ẋ they include
-//! the cyclic coordinates. [`Rates`] differentiates along the motion, gives a [verdict](Rates::verdict) on any
-//! function, and [finds](Rates::integrals) integrals that have the form of an [`Ansatz`]; these are proved.
-//! [`Integrals::find`] combines all of these, and Casimirs; [`Integrals::add_polynomials`] adds those of a
-//! [`PolynomialAnsatz`], with parameters in their coefficients. An integral that is linear in the momenta belongs to
-//! a [`NoetherField`].
+//! [`CyclicDisplacement::all`] finds the a_s X_s whose momentum a_s y_s the motion conserves; for η = ẋ these
+//! displacements include those along cyclic coordinates. [`Rates`] differentiates along the motion, gives a
+//! [verdict](Rates::verdict) on any function, and [finds](Rates::integrals) integrals that have the form of an
+//! [`Ansatz`]; these are proved. [`Integrals::find`] combines all of these, and Casimirs;
+//! [`Integrals::add_polynomials`] adds those of a [`PolynomialAnsatz`], with parameters in their coefficients. An
+//! integral that is linear in the momenta belongs to a [`NoetherField`].
 //!
 //! ```
 //! use pc_analysis::{Conservation, CyclicDisplacement, Rates};
@@ -103,8 +104,8 @@
 //! # Hamilton–Jacobi
 //!
 //! If X_0 S + H(t, x, X_s S) = 0, then y_s = X_s S satisfies (10) along the motion (11). [`hamilton_jacobi`]
-//! substitutes S and proves the equation, [`ProposedAction::check`] gives a verdict if there is no proof; from a
-//! [`CompleteIntegral`] S(t, x, α) the motions follow by ∂S/∂α_s = β_s (Jacobi).
+//! substitutes S and proves the equation, and [`ProposedAction::check`] gives a verdict if there is no proof; a
+//! [`CompleteIntegral`] S(t, x, α) yields the motions through ∂S/∂α_s = β_s (Jacobi).
 //!
 //! ```
 //! use pc_analysis::CompleteIntegral;
@@ -125,11 +126,12 @@
 //! # Steady motions and stability
 //!
 //! [`SteadyMotion::near`] finds states in which all but the cyclic coordinates are at rest, with their first
-//! approximation. Its [`Spectrum`] shows instability, or asymptotic stability; the [`SecondVariation`] of the energy
-//! under constant integrals shows stability (Routh; Chetaev's bundle of integrals). Each gives a [`Verdict`], which
-//! may be undecided. [`SteadySearch::near`] finds the steady motion near a start with the same values of the
-//! integrals, and applies both; [`SteadyMotions::search`] finds steady motions from many starts, and the equilibria.
-//! A [`Variation`] is a motion together with deviations from it, δ̇ = (∂f/∂y) δ.
+//! approximation. The [`Spectrum`] of the first approximation shows instability, or asymptotic stability; the
+//! [`SecondVariation`] of the energy under constant integrals shows stability (Routh; Chetaev's bundle of
+//! integrals). Each gives a [`Verdict`], which may be undecided. [`SteadySearch::near`] finds the steady motion near
+//! a start with the same values of the integrals, and applies both criteria; [`SteadyMotions::search`] finds steady
+//! motions from many starts, and the equilibria. A [`Variation`] is a motion together with deviations from it, δ̇ =
+//! (∂f/∂y) δ.
 //!
 //! ```
 //! use pc_analysis::{SecondVariation, Spectrum, Verdict, first_approximation};

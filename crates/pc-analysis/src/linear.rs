@@ -2,9 +2,10 @@
 //!
 //! The matrices are computed from equations of motion in independent quasi-velocities and the [`Leaf`](linearizer::Leaf) on which a motion
 //! stays. Read `leaf` first, which selects independent coordinates; `linearizer` evaluates the derivatives, those of reactions using
-//! `reactions`, and `linearization` combines them; `second_order` writes them as M q̈ + G q̇ + K q = F u and `modes` finds eigenvectors.
-//! `root_locus` follows eigenvalues as a parameter varies (`assignment` pairs them), `equilibria` searches a box for equilibria, and
-//! `trim` chooses inputs and components of the state so that a state is one.
+//! `reactions`, and `linearization` combines them; `second_order` writes the equations as M q̈ + G q̇ + K q = F u and
+//! `modes` finds eigenvectors. `root_locus` follows eigenvalues as a parameter varies (`assignment` pairs them),
+//! `equilibria` searches a box for equilibria, and `trim` chooses inputs and components of the state so that the state
+//! is an equilibrium.
 
 pub(crate) mod assignment;
 pub(crate) mod equilibria;

@@ -1,10 +1,10 @@
 //! Steady motions and their stability.
 //!
-//! From compiled equations and a guess follow a steady motion and verdicts on its stability. `steady_motion`
-//! finds it with its first approximation, `spectrum` decides its stability from eigenvalues in the `reachable`
-//! directions, and `second_variation` from integrals, for which `definite` finds a definite combination of
-//! quadratic forms; `steady_search` applies all of these to the steady motion near a start, `steady_motions`
-//! to those found from many starts.
+//! Compiled equations and a guess yield a steady motion and verdicts on its stability. `steady_motion` finds
+//! the motion with its first approximation, `spectrum` decides its stability from eigenvalues in the
+//! `reachable` directions, and `second_variation` from integrals, for which `definite` finds a definite
+//! combination of quadratic forms; `steady_search` applies all of these to the steady motion near a start,
+//! `steady_motions` to those found from many starts.
 
 pub(crate) mod definite;
 mod reachable;

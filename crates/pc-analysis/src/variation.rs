@@ -33,7 +33,7 @@ impl<F: VectorField> Variation<F> {
         }
     }
 
-    /// The field that y alone follows.
+    /// The vector field for y alone.
     pub fn field(&self) -> &F {
         &self.field
     }

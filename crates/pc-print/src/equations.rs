@@ -1,7 +1,7 @@
 //! The printed content of the equations.
 //!
-//! The equations of an assembled model are `derived` in a `form` and turned into a `sheet`: kinematics, brackets, equations, energy, with
-//! the `operations` that they cost and the kinds of `constraints`.
+//! The equations of an assembled model are `derived` in a `form` and turned into a `sheet`: kinematics, brackets,
+//! equations, energy, with the `operations` they cost and the kinds of their `constraints`.
 
 pub(crate) mod constraints;
 pub(crate) mod derived;

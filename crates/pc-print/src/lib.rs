@@ -1,5 +1,4 @@
-//! The equations of a model in print: as text like that of a book, as LaTeX for a paper, as JSON for
-//! programs.
+//! The equations of a model in print: as text set as in a book, as LaTeX for a paper, as JSON for programs.
 //!
 //! A [`page`](page()) is the output of `pc derive` and of `pc_system_print` of the C interface. Its parts are also
 //! public: the [`Derived`] equations in each [`Form`], the [`Sheet`] of their printed expressions, and the

@@ -3,7 +3,7 @@
 use pc_model::ModelError;
 use pc_verify::VerifyError;
 
-/// A report that cannot be made.
+/// The reason why a report cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
     /// The model is wrong, or some part of it cannot be derived.

@@ -42,7 +42,7 @@ pub struct Samples {
 pub struct Recording {
     /// The samples of the table, evenly spaced like the stills of a film.
     pub rows: Samples,
-    /// Samples as dense as smooth curves require, if they are known.
+    /// Samples as dense as smooth curves require, if there are any.
     pub fine: Option<Samples>,
     /// The summary of the motion, as lines with labels; it is the same on every run.
     pub summary: Vec<(String, Vec<String>)>,

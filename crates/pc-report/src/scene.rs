@@ -7,25 +7,25 @@ use serde_json::{Value, json};
 
 use crate::recording::Recording;
 
-/// A limit on the count of numbers in all stills together: a third of a megabyte.
+/// The largest number of values in all stills together, which take up a third of a megabyte.
 const MOST_NUMBERS: usize = 60_000;
 
 /// A shape, whose numbers are stored in the stills, shape by shape.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SceneShape {
-    /// Three numbers: a dot, with a label.
+    /// Three numbers: the position of a dot with a label.
     Point(Option<String>),
     /// Three numbers for each of this many corners.
     Line(usize),
-    /// Its centre, normal and radius.
+    /// The centre, the normal and the radius.
     Disc,
-    /// Its centre and radius.
+    /// The centre and the radius.
     Sphere,
-    /// Its centre, edge lengths, and the rows of a rotation matrix.
+    /// The centre, the edge lengths, and the rows of a rotation matrix.
     Box,
-    /// Their common point and the rows of a rotation matrix.
+    /// The common point of the axes, and the rows of a rotation matrix.
     Axes,
-    /// Its two ends.
+    /// The two ends.
     Spring,
     /// Three numbers: the point that leaves a trace.
     Trace,
@@ -155,7 +155,7 @@ impl Scene {
         }))
     }
 
-    /// The count of the numbers that all shapes have in a still.
+    /// The number of values that all shapes together have in each still.
     pub fn width(&self) -> usize {
         self.shapes.iter().map(SceneShape::numbers).sum()
     }

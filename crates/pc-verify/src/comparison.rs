@@ -1,9 +1,10 @@
 //! The comparison of the two derivations.
 //!
 //! The numbers of the `first` and the `second` derivation are compared as `quantities` with their `natural` sizes, including `solved`
-//! unknowns; the result is an `agreement` within the `tolerance`. Large models are compared by `projected` equations. `compare` compares
-//! at many states, `outlet` before results are returned, `printed` compares printed expressions, `slopes` derivatives, and `resets`
-//! states after events. `unsteady` distinguishes jumps and rounding errors from errors of derivation.
+//! unknowns; the result is an `agreement` within the `tolerance`. Large models are compared by `projected` equations.
+//! `compare` does so at many states, `outlet` just before results are returned; `printed` compares printed expressions,
+//! `slopes` compares derivatives, and `resets` compares states after events. `unsteady` distinguishes jumps and
+//! rounding errors from errors of derivation.
 
 pub(crate) mod agreement;
 pub(crate) mod compare;

@@ -1,9 +1,10 @@
 //! The second derivation at one state.
 //!
 //! Terms are evaluated at a `point`, whose variables are those of a `place` (a state). Read `derivation` first: the parts that are linear
-//! in velocities. From these parts follow the `velocities`, the `structure` coefficients (`constants` or `brackets`) and the `forces`
-//! with their `force_function`; from these follow the `equations`, with `resultants`. `here` holds the results at one place, and
-//! `quantity` names the quantities that both derivations have; `states` draws random places, and `summands` computes the sizes of sums.
+//! in velocities. These parts yield the `velocities`, the `structure` coefficients (`constants` or `brackets`) and the
+//! `forces` with their `force_function`, which in turn yield the `equations`, with `resultants`. `here` holds the
+//! results at one place, and `quantity` names the quantities that both derivations have; `states` draws random places,
+//! and `summands` computes the sizes of sums.
 
 pub(crate) mod brackets;
 pub(crate) mod constants;

@@ -1,4 +1,4 @@
-//! The reasons why no agreement was found.
+//! The reasons why no agreement between the two derivations was found.
 
 use std::fmt;
 
@@ -23,7 +23,7 @@ pub enum VerifyError {
     NothingCompared {
         /// The number of states tried.
         tried: usize,
-        /// The reason why the last state was skipped.
+        /// The reason why the last of these states was skipped.
         reason: String,
     },
 }
@@ -40,11 +40,11 @@ pub struct Disagreement {
     pub form: String,
     /// The quantity.
     pub quantity: String,
-    /// Its value according to the compiled first derivation.
+    /// The value of the quantity according to the compiled first derivation.
     pub first: f64,
-    /// Its value according to the second derivation.
+    /// The value of the quantity according to the second derivation.
     pub second: f64,
-    /// The size of its terms, in the units of the quantity, including rounding errors propagated through the
+    /// The size of the terms of the quantity, in its units, including rounding errors propagated through the
     /// linear equations.
     pub size: f64,
     /// Time.

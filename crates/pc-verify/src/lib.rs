@@ -3,12 +3,13 @@
 //! The first derivation turns the text into expressions of a graph, which is simplified using fingerprints,
 //! and compiles these to machine code. The second derivation shares only the parsed text with the first. It
 //! evaluates the syntax trees over dual numbers, which gives every derivative, sets up Lagrange's equations
-//! with multipliers at one state and solves them by dense elimination with pivoting. It uses no graph, no
-//! rewriting, and no brackets as long as the frame determines them. If the rank of the frame is below the
-//! number of quasi-velocities, equations (9) are used in their original form, with the given brackets.
+//! with multipliers at one state and solves them by dense elimination with pivoting. The second derivation
+//! uses no graph, no rewriting, and no brackets as long as the frame determines them. If the rank of the
+//! frame is below the number of quasi-velocities, equations (9) are used in their original form, with the
+//! given brackets.
 //!
-//! [`verify`] compares both at random states that satisfy the constraints, in each form that the program offers. It
-//! compares ẋ, η̇ or ẏ, the multipliers, the energy with its rate, integrals and outputs.
+//! [`verify`] compares the two derivations at random states that satisfy the constraints, in each form that the
+//! program offers. It compares ẋ, η̇ or ẏ, the multipliers, the energy with its rate, integrals and outputs.
 //!
 //! ```
 //! use pc_model::{Builtin, Model};

@@ -11,9 +11,9 @@ impl<'g> PoissonBracket<'g> {
     ///
     ///   (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + (c_rs^m y_m + c_rs^α (∂L/∂η_α)_0) ∂f/∂y_s ∂g/∂y_r,   r, s, m ≤ l,
     ///
-    /// the (∂L/∂η_α)_0 as functions of (x, y). It is skew and generates the motion (34) of a stationary system without
-    /// forces, ẋ_i = (x_i, H), ẏ_s = (y_s, H); Jacobi's identity holds if and only if the constraints are integrable
-    /// [van der Schaft, Maschke, Rep. Math. Phys. 34 (1994) 225], which
+    /// the (∂L/∂η_α)_0 as functions of (x, y). This bracket is skew and generates the motion (34) of a stationary
+    /// system without forces, ẋ_i = (x_i, H), ẏ_s = (y_s, H); Jacobi's identity holds if and only if the constraints
+    /// are integrable [van der Schaft, Maschke, Rep. Math. Phys. 34 (1994) 225], which
     /// [`jacobi_violation`](PoissonBracket::jacobi_violation) decides.
     ///
     /// # Errors
@@ -60,7 +60,8 @@ impl<'g> PoissonBracket<'g> {
     }
 }
 
-/// (∂L/∂η_α)_0 in terms of the symbols `free` of the free quasi-velocities, and the number of these.
+/// (∂L/∂η_α)_0 in terms of the symbols `free` of the free quasi-velocities, and the number of free
+/// quasi-velocities.
 fn dropped_momenta<'g>(constrained: &Constrained<'g>, free: &[Expr<'g>]) -> (Vec<Expr<'g>>, usize) {
     let (system, l) = (constrained.system(), free.len());
     let eta = system.quasi_velocities();

@@ -58,9 +58,9 @@ impl<'g> PoissonBracket<'g> {
     }
 
     /// Functionally independent Casimirs that are polynomials of degree ≤ `degree` in the variables, with
-    /// rational coefficients; those of low degree come first. There are at most
-    /// [`corank`](PoissonBracket::corank) of them; if there are fewer, the remaining Casimirs are of higher
-    /// degree, rational or transcendental.
+    /// rational coefficients; those of low degree come first. At most [`corank`](PoissonBracket::corank) of
+    /// them exist; if fewer are found, the remaining Casimirs are of higher degree, rational or
+    /// transcendental.
     ///
     /// ```
     /// use pc_analysis::PoissonBracket;

@@ -24,7 +24,7 @@ use crate::integrals::polynomials::independent;
 /// Besides the variables, functions may contain symbols that count as constants: the symbols in the tensor,
 /// those of the system to which it belongs except for its quasi-velocities, and those
 /// [declared](PoissonBracket::with_constants). Any other symbol in a function is an error, including
-/// quasi-velocities: [`Canonical::in_momenta`](pc_mech::Canonical::in_momenta) puts momenta in their place.
+/// quasi-velocities: [`Canonical::in_momenta`](pc_mech::Canonical::in_momenta) replaces them by momenta.
 #[derive(Clone, Debug)]
 pub struct PoissonBracket<'g> {
     graph: &'g Graph,
@@ -36,8 +36,8 @@ pub struct PoissonBracket<'g> {
 
 /// The symbols of the system that are neither variables of its bracket nor quasi-velocities: time unless it
 /// is a variable, parameters, and any others in its equations. If L is not quadratic, H contains the
-/// quasi-velocities; where these have their values, the derivatives of H with respect to the other symbols
-/// are those of H(x, y).
+/// quasi-velocities; once they are replaced by their values, the derivatives of H with respect to the other
+/// symbols are those of H(x, y).
 fn constants<'g>(system: &System<'g>, variables: &[Expr<'g>]) -> Vec<Expr<'g>> {
     let closed = quadratic(system.graph(), system.lagrangian(), system.quasi_velocities()).is_some();
     let mut constants = system.symbols();
@@ -157,7 +157,8 @@ impl<'g> PoissonBracket<'g> {
         PoissonBracket { graph, tensor, variables: y, time_momentum: None, constants }
     }
 
-    /// The bracket with (z_i, z_j) = `tensor`_ij of the variables z, whether or not it satisfies Jacobi's identity.
+    /// The bracket with (z_i, z_j) = `tensor`_ij for the variables z, whether or not it satisfies Jacobi's
+    /// identity.
     ///
     /// # Errors
     /// [`ShapeError`](pc_mech::ShapeError) if the tensor is not square with one row per variable;
@@ -206,7 +207,8 @@ impl<'g> PoissonBracket<'g> {
     }
 
     /// The first three variables whose brackets do not satisfy Jacobi's identity, with the defect; `None` if there
-    /// are none. A defect that is not folded to zero counts only if its numerical values show that it is not zero.
+    /// are no such variables. A defect that is not folded to zero counts only if its numerical values show that it
+    /// is not zero.
     pub fn jacobi_violation(&self) -> Option<([Expr<'g>; 3], Expr<'g>)> {
         let z = &self.variables;
         let triples = (0..z.len())
@@ -280,9 +282,9 @@ impl<'g> PoissonBracket<'g> {
         Ok(self.defect(f, g, h))
     }
 
-    /// The functions, their brackets, the brackets of these and so on, without those that depend functionally
-    /// on earlier ones; the given functions come first. If the given functions are integrals, so are their
-    /// brackets.
+    /// The functions, their brackets, the brackets of those brackets, and so on, except functions that depend
+    /// functionally on earlier ones; the given functions come first. If the given functions are integrals, so
+    /// are their brackets.
     ///
     /// # Errors
     /// As for [`of`](PoissonBracket::of).

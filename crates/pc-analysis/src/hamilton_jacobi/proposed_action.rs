@@ -11,11 +11,11 @@ const POINTS: u64 = 16;
 /// The verdict on an action S(t, x, α).
 #[derive(Clone, Debug)]
 pub struct ProposedAction<'g> {
-    /// The remainder X_0 S + H(t, x, X_s S), which is zero if that is proved.
+    /// The remainder X_0 S + H(t, x, X_s S), simplified to zero if it is proved to vanish.
     pub remainder: Expr<'g>,
     /// Whether the remainder vanishes, relative to its two terms.
     pub identity: Identity,
-    /// A point where it does not vanish, if there is one.
+    /// A point where the remainder does not vanish, if one was found.
     pub refuted: Option<Residual>,
     /// The rank of ∂(X_s S)/∂α at almost all points, which is k if the integral is complete.
     pub rank: usize,
@@ -24,15 +24,15 @@ pub struct ProposedAction<'g> {
 /// The value of a remainder at a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Residual {
-    /// Names and values of its symbols.
+    /// The names and values of the symbols in the remainder.
     pub at: Vec<(String, f64)>,
-    /// Its value there.
+    /// The value of the remainder there.
     pub value: f64,
 }
 
 impl<'g> ProposedAction<'g> {
-    /// The verdict on S = `action`, a function of (t, x) and of `constants`: from the cancellation of terms,
-    /// and from numerical values `near` a point where S is defined.
+    /// The verdict on S = `action`, a function of (t, x) and of `constants`, based on the cancellation of
+    /// terms and on numerical values `near` a point where S is defined.
     ///
     /// # Errors
     /// As for [`hamilton_jacobi`].

@@ -47,10 +47,10 @@ fn solved<'h>(graph: &'h Graph, radicand: Expr<'h>, root: Expr<'h>) -> Option<(E
     })
 }
 
-/// Radicands with the symbols of their roots.
+/// Radicands, each with the symbol of its root.
 type Roots<'h> = RefCell<Vec<(Expr<'h>, Expr<'h>)>>;
 
-/// An expression in which roots are symbols; a constant has no graph.
+/// An expression in which symbols stand for roots; a constant has no graph.
 #[derive(Clone, Copy)]
 struct Rooted<'a, 'h> {
     value: Expr<'h>,

@@ -23,12 +23,12 @@ impl<'g> Rates<'g> {
     /// including constants and integrals that are functions of each other.
     ///
     /// The functions are of (t, x, η) or (t, x, y), and may contain parameters. Each integral is proved: its rate is
-    /// folded to zero. Parameters count as unknowns, which the coefficients do not contain:
-    /// [bind](Rates::with_parameters_bound) them to search for given values. See
-    /// [`linear_relations`](pc_expr::Graph::linear_relations) for other integrals that may be missed.
+    /// folded to zero. Parameters count as indeterminates, and the coefficients do not contain them;
+    /// [bind](Rates::with_parameters_bound) them to search for integrals at given values. See
+    /// [`linear_relations`](pc_expr::Graph::linear_relations) for integrals that may be missed.
     ///
     /// # Errors
-    /// [`AnalysisError::NotAVariable`] for a function of something that does not belong to the motion.
+    /// [`AnalysisError::NotAVariable`] for a function of a symbol that does not belong to the motion.
     pub fn integrals_among(&self, functions: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, AnalysisError> {
         let rates: Vec<Vec<Expr<'g>>> = self.of_all(functions)?.into_iter().map(|rate| vec![rate]).collect();
         let relations = self.graph.linear_relations(&rates);
@@ -39,7 +39,7 @@ impl<'g> Rates<'g> {
     /// known ones; those of low degree come first.
     ///
     /// # Errors
-    /// [`AnalysisError::NotAVariable`] for a function of something that does not belong to the motion.
+    /// [`AnalysisError::NotAVariable`] for a function of a symbol that does not belong to the motion.
     ///
     /// ```
     /// use pc_analysis::Rates;
@@ -83,11 +83,10 @@ impl<'g> Rates<'g> {
     }
 }
 
-/// The positions in which a symbol occurs in an expression: in the argument of a sine or cosine, or
-/// elsewhere.
+/// Where a symbol occurs in an expression: in the argument of a sine or cosine, or elsewhere.
 ///
-/// It is found by evaluating the expression over this type: the symbol itself counts as occurring elsewhere,
-/// all others as occurring nowhere.
+/// This is found by evaluating the expression over this type: the symbol itself counts as occurring
+/// elsewhere, all others as occurring nowhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Places {
     in_circle: bool,

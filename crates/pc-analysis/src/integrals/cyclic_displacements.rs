@@ -14,7 +14,7 @@ pub struct CyclicDisplacement<'g> {
     /// The integral a_s ∂L/∂η_s in terms of (t, x, η).
     pub momentum: Expr<'g>,
     /// Whether X commutes with X_0..X_k, that is, a_s c_rs^m = 0 for r = 0..k. If so, the condition is X L + a_s
-    /// Q_s = 0; otherwise it holds because terms of this particular Lagrangian cancel.
+    /// Q_s = 0; otherwise the condition holds because terms of this particular Lagrangian cancel.
     pub commutes: bool,
 }
 
@@ -23,11 +23,11 @@ impl<'g> CyclicDisplacement<'g> {
     ///
     ///   d/dt (a_s y_s) = a_s [(c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s] = 0   identically in (t, x, η),
     ///
-    /// by (9). The condition is sufficient and, for constant a_s, necessary. It holds in particular for the
-    /// displacements that are cyclic in Chetaev's sense: they [commute](CyclicDisplacement::commutes) with all
+    /// by (9). The condition is sufficient and, for constant a_s, necessary. The condition holds in particular for
+    /// the displacements that are cyclic in Chetaev's sense: they [commute](CyclicDisplacement::commutes) with all
     /// operators, and X L = 0. In the frame X_s = ∂/∂x_s these are the coordinates that are cyclic in Lagrange's
-    /// sense. It also holds for X_3 of Lagrange's top in body axes, where the first term is ω_2 y_1 − ω_1 y_2 = (A −
-    /// B) ω_1 ω_2.
+    /// sense. The condition also holds for X_3 of Lagrange's top in body axes, where the first term is ω_2 y_1 − ω_1
+    /// y_2 = (A − B) ω_1 ω_2.
     ///
     /// Parameters count as independent of each other; [bind](System::with_parameters_bound) them to use their
     /// values.

@@ -7,7 +7,7 @@ use crate::integrals::rates::Rates;
 /// A function that may be an integral.
 #[derive(Clone, Debug)]
 pub struct Integral<'g> {
-    /// Its name: as declared, or `energy`, `momentum 1`, `Casimir 1`, `found 1`.
+    /// The name of the integral: as declared, or `energy`, `momentum 1`, `Casimir 1`, `found 1`.
     pub name: String,
     /// The function of (t, x, η).
     pub value: Expr<'g>,
@@ -15,7 +15,7 @@ pub struct Integral<'g> {
     pub origin: Origin,
     /// The verdict on its rate.
     pub verdict: ConservationVerdict<'g>,
-    /// Whether an event may change it.
+    /// Whether an event may change the integral.
     pub jumps: bool,
     /// Whether it is known to be a function of the integrals before it in the list.
     pub dependent: bool,
@@ -24,47 +24,50 @@ pub struct Integral<'g> {
 /// The origin of an integral.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Origin {
-    /// It is declared with the system.
+    /// The integral is declared with the system.
     Declared,
-    /// It is declared, and is a function of Casimirs.
+    /// The integral is declared, and is a function of Casimirs.
     DeclaredCasimir,
-    /// It is the energy formed with the velocities in the equations.
+    /// The integral is the energy formed with the velocities in the equations.
     Energy,
-    /// It is the energy formed with all velocities, while the equations contain only independent ones.
+    /// The integral is the energy formed with all velocities, while the equations contain only independent
+    /// ones.
     EnergyOfAll,
-    /// It is the momentum a_s y_s of a [`CyclicDisplacement`](crate::CyclicDisplacement).
+    /// The integral is the momentum a_s y_s of a [`CyclicDisplacement`](crate::CyclicDisplacement).
     CyclicDisplacement {
         /// a_1..a_k
         coefficients: Vec<Number>,
     },
-    /// It is a Casimir of the bracket (12).
+    /// The integral is a Casimir of the bracket (12).
     Casimir,
-    /// It was found by an ansatz.
+    /// The integral was found by an ansatz.
     Found,
 }
 
 /// The verdict on the rate of change of a function along the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ConservationVerdict<'g> {
-    /// It vanishes identically.
+    /// The rate vanishes identically.
     Conserved,
-    /// It vanishes identically for these values of the parameters.
+    /// The rate vanishes identically for these values of the parameters.
     ConservedHere,
-    /// It vanishes identically, possibly only for these values, wherever the function does not jump.
+    /// The rate vanishes identically, possibly only for these values of the parameters, wherever the function
+    /// does not jump.
     BetweenJumps,
-    /// It is unknown, because the function depends on more than time and state, for example on reactions.
+    /// The rate is unknown, because the function depends on more than time and state, for example on
+    /// reactions.
     NoFunction,
-    /// It was not found to vanish.
+    /// The rate was not found to vanish.
     Rate {
         /// The rate in terms of (t, x, η).
         rate: Expr<'g>,
-        /// Its value at the start, if it has one.
+        /// The value of the rate at the start, if it has one.
         at_start: Option<f64>,
-        /// The size of the sum of its terms at the start as a fraction of their sizes, from 0 to 1: only rounding error if the
-        /// function is an integral.
+        /// The absolute value of the rate at the start, divided by the sum of the absolute values of its terms, from 0
+        /// to 1: only rounding error if the function is an integral.
         part_left: Option<f64>,
-        /// The same at states near the start, if the start alone does not refute conservation and every nearby state is
-        /// possible.
+        /// The same quotient at states near the start, if the start alone does not refute conservation and every nearby
+        /// state is possible.
         near: Option<f64>,
     },
 }

@@ -8,7 +8,7 @@ use pc_mech::{Canonical, Expr, System};
 /// A field X = a_s X_s, in which the a_s are functions of (t, x), such that the motion conserves a_s y_s +
 /// f(t, x), where a_s y_s is the momentum of X.
 ///
-/// X is a symmetry of L up to the rate of f. Where it [commutes](NoetherField::commutes) with all operators
+/// X is a symmetry of L up to the rate of f. Where X [commutes](NoetherField::commutes) with all operators,
 /// it is cyclic in Chetaev's sense: equations (9) in a frame with X among its operators contain d/dt (a_s
 /// y_s) = X L + a_s Q_s. A coordinate that is cyclic in Lagrange's sense corresponds to X = ∂/∂x; other
 /// examples are the rotations in space of a body described in its own axes.

@@ -11,21 +11,21 @@ use crate::integrals::search::{Search, binomial};
 /// The largest number of functions with unknown coefficients; a search with this many takes some seconds.
 const MOST_FUNCTIONS: usize = 600;
 
-/// The greatest length of the accelerations along which functions are differentiated, in operations when
-/// written out.
+/// The greatest length of the accelerations along which functions are differentiated, counted in operations
+/// of the written-out expressions.
 const LONGEST: u32 = 4_000;
 
 /// The largest number of products of known integrals that are excluded from the results.
 const MOST_PRODUCTS: usize = 400;
 
-/// The largest number of factors without velocities in such a product.
+/// The largest number of factors without velocities in a product of known integrals.
 const MOST_OF_PLACE: u32 = 2;
 
 /// The largest degree in the parameters that coefficients may have.
 const MOST_PARAMETER_DEGREE: u32 = 4;
 
-/// The largest number of products of parameters and functions that have unknown coefficients in such
-/// polynomials.
+/// The largest number of products of parameters and functions that have unknown coefficients in a search for
+/// coefficients that are polynomials in the parameters.
 const MOST_WITH_PARAMETERS: usize = 300;
 
 /// The form of the integrals to be found: Σ a_jlm m_j p_l f_m with rational a_jlm, monomials m_j in η, monomials p_l
@@ -58,16 +58,16 @@ pub enum AnsatzSearch {
 }
 
 impl<'g> Integrals<'g> {
-    /// Adds the integrals of an ansatz to those already known, unless they are polynomials of known ones with rational
+    /// Adds the integrals of an ansatz to those already known, unless they are polynomials in known ones with rational
     /// coefficients; those of low degree come first. Integrals that are other functions of earlier ones, such as the
     /// third component of the Runge–Lenz vector, are marked as dependent.
     ///
-    /// They are sought for the present values of the parameters. If the coefficients are polynomials in the
-    /// parameters, up to a common factor, these polynomials are used and the integral is proved for all
-    /// values.
+    /// The integrals are sought for the present values of the parameters. If the coefficients are polynomials
+    /// in the parameters, up to a common factor, these polynomials are used and the integral is proved for
+    /// all values.
     ///
     /// # Errors
-    /// [`AnalysisError::NotAVariable`] for a function of something that does not belong to the motion.
+    /// [`AnalysisError::NotAVariable`] for a function of a symbol that does not belong to the motion.
     ///
     /// ```
     /// use pc_analysis::{Integrals, PolynomialAnsatz};
@@ -128,7 +128,7 @@ impl<'g> Integrals<'g> {
         }
     }
 
-    /// Adds the integrals in a span of functions, of low degree first.
+    /// Adds the integrals in a span of functions, those of low degree first.
     fn add_span(
         &mut self,
         search: &Search<'_, 'g>,
@@ -184,7 +184,7 @@ impl<'g> Integrals<'g> {
 
 /// The functions that have unknown coefficients in a search.
 struct Span<'g> {
-    /// In order of ascending degree in η.
+    /// The functions, in order of ascending degree in η.
     functions: Vec<Expr<'g>>,
     /// The number of functions of degree ≤ 0, 1, ….
     up_to_degree: Vec<usize>,
@@ -193,8 +193,8 @@ struct Span<'g> {
 }
 
 impl<'g> Span<'g> {
-    /// The span whose coefficients have the largest degree up to `most` that can be searched; if even degree
-    /// 0 has too many functions, their number.
+    /// The span whose coefficients have the largest degree up to `most` that can be searched; if there are
+    /// too many functions even for degree 0, their number.
     fn new(
         graph: &'g Graph,
         rates: &Rates<'g>,
@@ -283,12 +283,12 @@ fn is_combination<'g>(graph: &'g Graph, of: &[Expr<'g>], f: Expr<'g>) -> bool {
     graph.dependent_columns(&columns, &[]).iter().any(|&(j, _)| j == of.len())
 }
 
-/// The integral Σ a_i(p) f_i for all values of the parameters p that equals Σ a_i f_i for the present ones,
-/// up to a factor, if there is one whose coefficients are polynomials of low degree in the parameters of its
-/// rates; the one of lowest degree.
+/// The integral Σ a_i(p) f_i for all values of the parameters p that for their present values equals Σ a_i
+/// f_i up to a factor, if there is one whose coefficients are polynomials of low degree in the parameters of
+/// its rates; of several, the one of lowest degree.
 ///
-/// It is unique up to its factor: without the last of them, the functions in a relation in echelon form are
-/// independent, for these values and therefore for almost all.
+/// This integral is unique up to its factor: all but the last of the functions in a relation in echelon form
+/// are independent, for these values and therefore for almost all.
 fn with_parameters<'g>(
     search: &Search<'_, 'g>,
     functions: &[Expr<'g>],

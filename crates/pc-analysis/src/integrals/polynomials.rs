@@ -2,7 +2,7 @@
 
 use pc_mech::{Expr, Graph, Number};
 
-/// A factor of monomials, and the largest power to which it is raised.
+/// A factor in monomials, and the largest power to which it is raised.
 pub(crate) type Generator<'g> = (Expr<'g>, u32);
 
 /// The products of powers of the generators that have a degree in 0..=`degree`, simple ones first.
@@ -10,7 +10,7 @@ pub(crate) fn monomials<'g>(generators: &[Generator<'g>], degree: u32) -> Vec<Ex
     (0..=degree).flat_map(|degree| of_degree(generators, degree)).collect()
 }
 
-/// The products of one degree.
+/// The products of a single degree.
 fn of_degree<'g>(generators: &[Generator<'g>], degree: u32) -> Vec<Expr<'g>> {
     let Some((&(z, largest), rest)) = generators.split_first() else {
         return if degree == 0 { vec![Expr::ONE] } else { Vec::new() };

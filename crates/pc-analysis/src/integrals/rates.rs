@@ -8,14 +8,14 @@ use crate::error::{AnalysisError, check_variables};
 /// The verdict on whether a function is constant along the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Conservation<'g> {
-    /// Its rate vanishes identically: it is an integral.
+    /// The rate of the function vanishes identically: the function is an integral.
     Conserved,
-    /// Its rate vanishes identically for the present values of the parameters.
+    /// The rate of the function vanishes identically for the present values of the parameters.
     ConservedHere,
-    /// Its rate vanishes identically, possibly only for the present values of the parameters, but the function jumps
-    /// where a sign or a step in it jumps, which its rate does not show.
+    /// The rate of the function vanishes identically, possibly only for the present values of the parameters, but
+    /// the function jumps where a sign or a step in it jumps, which the rate does not show.
     ConservedBetweenJumps,
-    /// Its rate is not folded to zero by the graph.
+    /// The graph does not fold the rate of the function to zero.
     Changing(Expr<'g>),
 }
 
@@ -42,7 +42,7 @@ pub struct Rates<'g> {
     parameters: Vec<(Expr<'g>, Expr<'g>)>,
     /// The symbols of η̇ with their expressions in (t, x, η).
     accelerations: Vec<(Expr<'g>, Expr<'g>)>,
-    /// The symbols of y with their expressions in (t, x, η), if these are not solved for η.
+    /// The symbols of y with their expressions in (t, x, η), if y = ∂L/∂η is not solved for η.
     momenta: Vec<(Expr<'g>, Expr<'g>)>,
     /// Each symbol that changes, with its rate.
     pub(crate) flow: Vec<(Expr<'g>, Expr<'g>)>,
@@ -115,8 +115,8 @@ impl<'g> Rates<'g> {
     /// The rate df/dt, as an expression in (t, x, η) or (t, x, y).
     ///
     /// # Errors
-    /// [`AnalysisError::NotAVariable`] for a function of a symbol that does not belong to the motion: it neither
-    /// changes along it nor appears in its equations.
+    /// [`AnalysisError::NotAVariable`] for a function of a symbol that does not belong to the motion: the symbol
+    /// neither changes along the motion nor appears in its equations.
     pub fn of(&self, f: Expr<'g>) -> Result<Expr<'g>, AnalysisError> {
         Ok(self.of_all(&[f])?[0])
     }
@@ -173,8 +173,8 @@ impl<'g> Rates<'g> {
         Ok(Some(left).filter(|left| left.is_finite()))
     }
 
-    /// Whether f contains a sign, a step or an angle of changing quantities, and therefore may jump, or is
-    /// seen to jump.
+    /// Whether f may jump, because it contains a sign, a step or an angle of changing quantities, or is seen
+    /// to jump.
     pub fn has_jumps(&self, f: Expr<'g>) -> bool {
         let f = self.graph.substitute(&[f], &self.accelerations)[0];
         let changing: Vec<Expr<'g>> = self.flow.iter().map(|&(symbol, _)| symbol).collect();

@@ -47,8 +47,8 @@ impl<'g> Integrals<'g> {
         Integrals { list }
     }
 
-    /// Adds the energy formed with all velocities, which a run observes; y·η − L of the independent ones is
-    /// then named Jacobi's.
+    /// Adds the energy formed with all velocities, which a run observes; the integral y·η − L of the
+    /// independent velocities is then named `Jacobi's`.
     pub fn add_energy_of_all(
         &mut self,
         equations: &Equations<'g>,
@@ -177,8 +177,8 @@ impl<'a, 'g> Search<'a, 'g> {
     }
 
     /// The rate of the energy without accelerations: the power of the forces and the explicit time dependence. Under constraints
-    /// that are homogeneous in the velocities, c_0r^m = 0, reactions have no power; it is then checked that this rate equals the
-    /// `rate` along the equations.
+    /// that are homogeneous in the velocities, c_0r^m = 0, reactions have no power; in that case this rate is checked
+    /// to equal the `rate` along the equations.
     fn power(&self, rate: Expr<'g>) -> Option<Expr<'g>> {
         if self.unconstrained {
             return Some(self.system().energy_rate());

@@ -51,7 +51,7 @@ pub(super) fn cheapest(costs: &[Vec<f64>]) -> Vec<usize> {
 mod tests {
     use super::*;
 
-    /// The result is compared with all pairings.
+    /// The result is compared with the costs of all pairings.
     #[test]
     fn no_pairing_is_cheaper() {
         fn least(costs: &[Vec<f64>], row: usize, used: &mut Vec<usize>) -> f64 {

@@ -14,7 +14,7 @@ use crate::stability::steady_motions::{SAME, periods, primes};
 use crate::stability::steady_search::{EnergyCriterion, Known, NearbySteadyMotion, Seeker, largest};
 
 /// A search for equilibria by Newton's method from many starts: the points of a low-discrepancy sequence,
-/// multiples of square roots of primes modulo 1 (R. Kronecker, H. Weyl), which are the same each time.
+/// multiples of square roots of primes modulo 1 (R. Kronecker, H. Weyl), which are the same on every run.
 ///
 /// ```
 /// use pc_analysis::{EquilibriumSearch, Leaf, Linearizer};
@@ -52,8 +52,8 @@ impl Default for EquilibriumSearch {
 pub struct Equilibria {
     /// The equilibria in ascending order of energy.
     pub list: Vec<FoundEquilibrium>,
-    /// The cyclic coordinates: equilibria remain equilibria whatever values these have; here they have those
-    /// of the start.
+    /// The cyclic coordinates, which have their values at the start; an equilibrium remains one whatever
+    /// these values are.
     pub anywhere: Vec<String>,
     /// The coordinates and first-order states that were searched over, with the bounds of the starts.
     pub bounds: Vec<(String, f64, f64)>,
@@ -72,14 +72,15 @@ pub struct FoundEquilibrium {
     pub energy: f64,
     /// The first approximation without cyclic coordinates.
     pub linearization: Linearization,
-    /// The results on its stability.
+    /// The results on the stability of the equilibrium.
     pub motion: NearbySteadyMotion,
-    /// The dimension of its family, not counting the dimensions due to cyclic coordinates; 0 if it is isolated, even if the
-    /// first approximation has a kernel, as at the minimum of x⁴.
+    /// The dimension of the family of the equilibrium, not counting the dimensions due to cyclic coordinates; 0 if it
+    /// is isolated, even if the first approximation has a kernel, as at the minimum of x⁴.
     pub family: usize,
     /// The number of members of the family that were found.
     pub members: usize,
-    /// The greatest distance of a member from this one, as a difference of components relative to 1 + |y|.
+    /// The greatest distance of a member of the family from this equilibrium, as a difference of components
+    /// relative to 1 + |y|.
     reach: f64,
 }
 
@@ -87,19 +88,19 @@ pub struct FoundEquilibrium {
 /// distance of it, relative to 1 + |y|, where the rates are below the tolerance of the method.
 const FLAT: f64 = 0.02;
 
-/// The distance from an equilibrium, relative to 1 + |y|, at which others of its family are looked for, and the
-/// number of directions.
+/// The distance from an equilibrium, relative to 1 + |y|, at which the search looks for others of the same
+/// family, and the number of directions in which it looks.
 const BESIDE: f64 = 0.3;
 const DIRECTIONS: usize = 3;
 
 /// The largest number of steps of Newton's method.
 const MOST_STEPS: usize = 60;
 
-/// If the slopes of the rates exceed those at the start by this factor, coordinates are singular.
+/// If the slopes of the rates exceed those at the start by this factor, the coordinates are singular.
 const MOST_STEEPER: f64 = 1e6;
 
-/// A small rate above this fraction of |∂f/∂y| (1 + |y|) does not indicate a nearby zero: it is small because
-/// it decays, like a force at a great distance.
+/// A small rate above this fraction of |∂f/∂y| (1 + |y|) does not indicate a nearby zero: the rate is small
+/// because it decays, like a force at a great distance.
 const FALLING: f64 = 1e-3;
 
 /// The largest relative difference of the energies within one family.
@@ -119,9 +120,9 @@ impl EquilibriumSearch {
         EquilibriumSearch { starts, ..self }
     }
 
-    /// The equilibria found on the leaf of the start (t, y), states at which all rates vanish. No two
-    /// coincide modulo the periods of angles; a family of equal energy is represented by one member. There
-    /// may be other equilibria.
+    /// The equilibria found on the leaf of the start (t, y), that is, the states at which all rates vanish.
+    /// No two coincide modulo the periods of angles; a family of equal energy is represented by one member.
+    /// There may be other equilibria.
     ///
     /// `integrals` are those of the `equations` in independent quasi-velocities, which the energy
     /// criterion uses; `linearizer` is made from these equations, or from those with multipliers.
@@ -237,8 +238,8 @@ impl EquilibriumSearch {
     }
 }
 
-/// A stable sort for an order in which equality holds up to rounding and is not transitive; the standard
-/// library requires a transitive order.
+/// A stable sort for an order in which equality holds only up to rounding errors and is therefore not
+/// transitive; the standard library requires a transitive order.
 fn insertion_sorted<T>(list: &mut [T], order: impl Fn(&T, &T) -> std::cmp::Ordering) {
     for i in 1..list.len() {
         let mut j = i;
@@ -277,8 +278,8 @@ impl Domain {
         guess
     }
 
-    /// The state with its angles within a turn from the lower bound of their box, or as near to zero as
-    /// possible.
+    /// The state with its angles within one turn above the lower bound of their box; angles without a given
+    /// box are as near as possible to zero, or to the start if they are not searched over.
     fn normalised(&self, mut state: Vec<f64>, start: &[f64]) -> Vec<f64> {
         for (i, period) in self.periods.iter().enumerate() {
             let Some(period) = period else { continue };

@@ -44,7 +44,7 @@ impl Directions {
         Ok(Directions { basis: factors.kernel(factors.rank(ZERO)) })
     }
 
-    /// Independent coordinates among the given ones: those that move most freely, the first among equals.
+    /// Independent coordinates among the given ones: those that move most freely; ties go to the first.
     pub(super) fn chart(&self, coordinates: &[usize]) -> Result<Chart, AnalysisError> {
         let d = self.basis.columns();
         let all = Matrix::from_fn(coordinates.len(), d, |i, j| self.basis[(coordinates[i], j)]);
@@ -95,7 +95,7 @@ impl Velocities {
 const ROUNDING: f64 = 1e-14;
 
 /// The indices of rows that form a basis of all rows, ascending: each step takes the row with the greatest
-/// remainder orthogonal to those already taken (the first among equals), as long as this remainder exceeds
+/// remainder orthogonal to those already taken (ties go to the first), as long as this remainder exceeds
 /// `zero`.
 pub(super) fn independent_rows(matrix: &Matrix<f64>, zero: f64) -> Vec<usize> {
     let mut left: Vec<Vec<f64>> = matrix.to_rows();

@@ -12,8 +12,8 @@ use crate::stability::spectrum::Spectrum;
 use crate::stability::steady_motion::{SteadyOptions, first_approximation};
 
 /// δẏ = A δy + B δu, δh = C δy + D δu for small deviations of the reduced state: independent coordinates of
-/// the states that satisfy the constraints, independent quasi-velocities, and first-order states. Inputs
-/// deviate from their present values.
+/// the states that satisfy the constraints, independent quasi-velocities, and first-order states. Deviations
+/// of inputs are measured from their present values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linearization {
     /// Time.
@@ -60,8 +60,8 @@ pub enum CyclicCoordinates {
     /// No cyclic coordinates: stability is judged without them.
     #[default]
     LeftOut,
-    /// The cyclic coordinates at rest on which no moving ones act: without the others the equations have
-    /// constant coefficients.
+    /// The cyclic coordinates that are at rest and unaffected by moving ones; without the other cyclic
+    /// coordinates the equations have constant coefficients.
     KeptAtRest,
 }
 
@@ -111,7 +111,7 @@ impl Linearizer {
     /// through this state.
     ///
     /// # Errors
-    /// [`ShapeError`](pc_mech::ShapeError); if f is not defined, as [`rhs`](pc_mech::VectorField::rhs).
+    /// [`ShapeError`](pc_mech::ShapeError); the errors of [`rhs`](pc_mech::VectorField::rhs) if f is not defined.
     pub fn at(&mut self, t: f64, state: &[f64]) -> Result<Linearization, AnalysisError> {
         shape("the state", state.len(), self.names().len())?;
         let rates = self.motion.rates(t, state)?;
@@ -127,7 +127,7 @@ impl Linearizer {
     /// them.
     ///
     /// # Errors
-    /// [`ShapeError`](pc_mech::ShapeError); if f is not defined, as [`rhs`](pc_mech::VectorField::rhs).
+    /// [`ShapeError`](pc_mech::ShapeError); the errors of [`rhs`](pc_mech::VectorField::rhs) if f is not defined.
     pub fn components(
         &mut self,
         t: f64,
@@ -141,7 +141,7 @@ impl Linearizer {
         Ok(reduced.kept.len())
     }
 
-    /// The cyclic coordinates that move, and those on whose rates moving ones act.
+    /// The cyclic coordinates that move, and those whose rates depend on moving ones.
     fn moving(&mut self, t: f64, state: &[f64]) -> Result<Vec<usize>, AnalysisError> {
         let rates = self.motion.rates(t, state)?;
         let jacobian = first_approximation(&mut self.motion, t, state)?;

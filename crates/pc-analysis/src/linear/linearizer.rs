@@ -22,10 +22,9 @@ pub struct Leaf<'g> {
     /// The system with all quasi-velocities, including those that constraints make vanish: its frame is
     /// integrable.
     pub whole: System<'g>,
-    /// The functions f in the conditions f(x) = 0 that constraints imply.
+    /// The functions f in the conditions f(x) = 0 that the constraints imply.
     pub positions: Vec<Expr<'g>>,
-    /// Functions of the coordinates alone that stay at their initial values, such as the length of a
-    /// quaternion.
+    /// Functions of the coordinates alone that keep their initial values, such as the length of a quaternion.
     pub kept: Vec<Expr<'g>>,
 }
 
@@ -273,7 +272,7 @@ impl Linearizer {
     /// Gives the parameters other values, in the order of declaration.
     ///
     /// # Panics
-    /// If there are more than the equations have.
+    /// If there are more values than the equations have parameters.
     pub fn set_parameters(&mut self, values: &[f64]) {
         let parameters = &mut self.motion.parameters_mut()[..values.len()];
         if parameters != values {
@@ -301,8 +300,8 @@ impl Linearizer {
     ///
     /// # Errors
     /// [`AnalysisError::DependsOnTime`]; [`AnalysisError::LeafUnknown`] if Newton's method would need
-    /// functions of the coordinates that motions keep constant but that are not known, and the state itself
-    /// is not steady; otherwise as [`SteadyMotion::near`].
+    /// functions of the coordinates that motions keep constant but that are unknown, and the state itself is
+    /// not steady; otherwise as [`SteadyMotion::near`].
     pub(super) fn find(
         &mut self,
         t: f64,

@@ -11,7 +11,7 @@ use crate::stability::spectrum::{Eigenvalue, Spectrum};
 pub struct Mode {
     /// λ
     pub eigenvalue: Eigenvalue,
-    /// v, as a pair of real and imaginary part for each component; the largest component is 1. None for a
+    /// v, as a pair of real and imaginary parts for each component; the largest component is 1. None for a
     /// multiple zero eigenvalue beyond the dimension of the kernel: there deviations grow with a power of t.
     pub vector: Option<Vec<(f64, f64)>>,
 }
@@ -83,7 +83,7 @@ fn real(vector: Vec<(f64, f64)>) -> Vec<f64> {
 /// Components this small, in a vector of length about 1, are treated as rounding errors.
 const ROUNDING: f64 = 1e-13;
 
-/// The vector scaled so that its largest component, the first among equals, is 1.
+/// The vector scaled so that its largest component, or the first of several such, is 1.
 fn normalised(vector: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     let sizes: Vec<f64> = vector.iter().map(|&(re, im)| re.hypot(im)).collect();
     let largest = sizes.iter().fold(0.0f64, |largest, &size| largest.max(size));

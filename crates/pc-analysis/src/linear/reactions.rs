@@ -13,7 +13,8 @@ use crate::numeric::program::values;
 ///
 ///   Cᵀ λ = M η̇ − r,   Cᵀ δλ = (∂F/∂y) δy + M δη̇ + (∂F/∂u) δu,
 ///
-/// These are k equations each, of rank m if the constraints are independent; they alone determine λ.
+/// Each of the two is a system of k equations, of rank m if the constraints are independent; they alone
+/// determine λ.
 #[derive(Clone, Debug)]
 pub(super) struct Reactions {
     /// C (m × k), then M η̇ − r, from (t, (y, η̇), p).

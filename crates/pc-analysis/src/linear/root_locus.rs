@@ -42,7 +42,8 @@ pub struct BranchCount {
 }
 
 impl RootLocus {
-    /// Adds the eigenvalues for the next value of the parameter, `None` if there is no linearization.
+    /// Adds the eigenvalues for the next value of the parameter; they are `None` if there is no
+    /// linearization.
     ///
     /// # Errors
     /// [`BranchCount`] if there are more or fewer than before; the locus is then unchanged.

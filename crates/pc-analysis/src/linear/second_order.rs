@@ -29,7 +29,7 @@ pub struct SecondOrder {
     pub input: Matrix<f64>,
 }
 
-/// The reasons why there are no such equations.
+/// The reasons why there are no equations of the second order.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoSecondOrder {
     /// The velocities change at the state.
@@ -38,8 +38,8 @@ pub enum NoSecondOrder {
     /// The mass matrix is not written out, since the tree is large.
     #[error("the mass matrix of a large tree is not written out")]
     LargeTree,
-    /// The equations depend on more coordinates than there are velocities, as may happen under nonholonomic
-    /// constraints.
+    /// The equations depend on more coordinates than there are velocities, which may happen under
+    /// nonholonomic constraints.
     #[error(
         "the equations depend on {coordinates} independent coordinates, but only {velocities} velocities are independent"
     )]
@@ -60,7 +60,7 @@ pub enum NoSecondOrder {
     /// First-order states act on the velocities.
     #[error("the first-order state {state} acts on the velocities")]
     FirstOrderState {
-        /// The first state that does.
+        /// The name of the first of the states that act on the velocities.
         state: String,
     },
 }
@@ -90,7 +90,7 @@ pub(super) struct Parts<'a> {
     pub(super) moved: &'a Matrix<f64>,
     /// ∂f/∂u
     pub(super) by_inputs: &'a Matrix<f64>,
-    /// M for all quasi-velocities of the state.
+    /// The mass matrix M for all quasi-velocities of the state.
     pub(super) mass: &'a Matrix<f64>,
     /// The cyclic coordinates, and those of them whose rates depend on moving ones.
     pub(super) cyclic: &'a [usize],

@@ -1,4 +1,4 @@
-//! Rest or steady motion by the choice of some inputs and components of the state.
+//! Rest or steady motion obtained by choosing some inputs and components of the state.
 
 use pc_mech::{Matrix, SingularValues, VectorField};
 
@@ -8,17 +8,18 @@ use crate::numeric::dense::norm;
 use crate::numeric::newton;
 use crate::stability::steady_motion::{check_smooth, first_approximation};
 
-/// The largest number of Newton's steps, and the relative residual that counts as zero.
+/// The largest number of steps of Newton's method, and the relative residual that counts as zero.
 const ITERATIONS: usize = 100;
 const ZERO: f64 = 1e-12;
-/// Singular values below this part of the largest are zeros, for slopes by quantities scaled to act alike; a quantity has a part in a
-/// change along which the rates vanish if it has this part of its square.
+/// Singular values below this fraction of the largest count as zero, once the columns of the slopes are scaled to the
+/// same length; a quantity takes part in the changes along which the rates vanish if the square of its component in the
+/// kernel exceeds this value.
 const SINGULAR: f64 = 1e-8;
 
 /// A state and inputs at which the rates of all but the cyclic coordinates vanish.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trim {
-    /// The state, by the names of its components.
+    /// The components of the state, with their names.
     pub state: Vec<(String, f64)>,
     /// The inputs.
     pub inputs: Vec<(String, f64)>,
@@ -29,8 +30,9 @@ pub struct Trim {
 }
 
 impl Linearizer {
-    /// Components of the state and inputs with the names `free`, chosen by Newton's method from their values in `guess` and in the
-    /// parameters so that the equilibrium or steady motion has all others as they are there.
+    /// Finds an equilibrium or steady motion by choosing the components of the state and the inputs with the names
+    /// `free`. Newton's method starts from their values in `guess` and in the parameters; all other components and
+    /// inputs keep these values.
     ///
     /// ```
     /// use pc_analysis::{Leaf, Linearizer};
@@ -53,9 +55,10 @@ impl Linearizer {
     /// ```
     ///
     /// # Errors
-    /// [`AnalysisError::DependsOnTime`]; [`AnalysisError::UnknownComponent`]; [`AnalysisError::LeafUnknown`] where coordinates are free
-    /// and the functions of them that the frame keeps are not known; [`AnalysisError::NoSteadyMotion`] with the best values found;
-    /// [`AnalysisError::Undetermined`] where these are not the only ones near by; [`AnalysisError::NotSmooth`].
+    /// [`AnalysisError::DependsOnTime`]; [`AnalysisError::UnknownComponent`]; [`AnalysisError::LeafUnknown`] if
+    /// coordinates are free and the functions of them that the frame keeps constant are not known;
+    /// [`AnalysisError::NoSteadyMotion`] with the best values found; [`AnalysisError::Undetermined`] if other values
+    /// nearby are solutions too; [`AnalysisError::NotSmooth`].
     pub fn trim(&mut self, t: f64, guess: &[f64], free: &[String]) -> Result<Trim, AnalysisError> {
         shape("the guess", guess.len(), self.motion.dim())?;
         if self.depends_on_time() {
@@ -117,7 +120,7 @@ impl Linearizer {
         free.iter().map(find).collect()
     }
 
-    /// Puts values of the unknowns where they belong.
+    /// Writes the values of the unknowns into the state and the parameters.
     fn give(&mut self, unknowns: &[Unknown], values: &[f64], state: &mut [f64]) {
         for (unknown, &value) in unknowns.iter().zip(values) {
             match *unknown {
@@ -127,7 +130,8 @@ impl Linearizer {
         }
     }
 
-    /// The rates that should vanish and the distances from the surface, with their slopes by the unknowns.
+    /// The rates that should vanish and the distances from the surface, with their slopes with respect to the
+    /// unknowns.
     fn balance(
         &mut self,
         t: f64,
@@ -155,14 +159,15 @@ impl Linearizer {
     }
 }
 
-/// What is chosen: a component of the state, or an input by its place among the parameters.
+/// An unknown: a component of the state, or an input, given by its index among the parameters.
 #[derive(Clone, Copy, Debug)]
 enum Unknown {
     Component(usize),
     Input(usize),
 }
 
-/// The names, one for each column of `slopes`, of what may change while the rates still vanish.
+/// The names of the quantities that may change while the rates still vanish; `names` has one name for each
+/// column of `slopes`.
 fn undetermined(slopes: &Matrix<f64>, names: &[String]) -> Result<Vec<String>, AnalysisError> {
     let (rows, columns) = (slopes.rows(), slopes.columns());
     let size = |j: usize| norm(&(0..rows).map(|i| slopes[(i, j)]).collect::<Vec<_>>());

@@ -150,7 +150,7 @@ pub(crate) fn simple_factors<'g>(system: &System<'g>, parts: &[Expr<'g>]) -> Vec
 }
 
 /// Factors to try: the coordinates with their sines and cosines, the factors of det b, the diagonal of the
-/// mass matrix and its determinant, as far as they are not constant.
+/// mass matrix and its determinant, except those that are constant.
 pub(crate) fn candidates<'g>(system: &System<'g>) -> Result<Vec<Expr<'g>>, AnalysisError> {
     let graph = system.graph();
     let equations = system.poincare()?;

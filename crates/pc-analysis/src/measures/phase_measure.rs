@@ -7,15 +7,15 @@ use crate::measures::invariant_measure::{
     InvariantMeasure, candidates, determinants_of_blocks, invariant_measure, simple_factors,
 };
 
-/// The largest number of free quasi-velocities of a motion for which a measure is sought if no theorem gives
-/// one.
+/// The largest number of free quasi-velocities for which a measure of the motion is sought if no theorem
+/// gives one.
 const MOST_VELOCITIES: usize = 6;
 
 /// The largest number of factors of a density that are tried together.
 const MOST_FACTORS: usize = 60;
 
-/// The greatest length of the equations of such a motion, in operations when written out; a search then takes
-/// some tenths of a second.
+/// The greatest length of the equations of such a motion, counted in operations of the written-out
+/// expressions; a search then takes some tenths of a second.
 const LONGEST: u32 = 4_000;
 
 /// The result of a search for an invariant measure.
@@ -23,9 +23,9 @@ const LONGEST: u32 = 4_000;
 pub enum MeasureSearch<'g> {
     /// This measure is invariant.
     Found(PhaseMeasure<'g>),
-    /// None was found.
+    /// No invariant measure was found.
     None,
-    /// It depends on forces that are computed outside the model.
+    /// The measure depends on forces that are computed outside the model.
     External,
     /// No theorem gives one, and the equations are too long to search.
     TooLong,
@@ -34,7 +34,8 @@ pub enum MeasureSearch<'g> {
 /// A measure on the phase space of (x, y) and the first-order states that is invariant under the motion.
 #[derive(Clone, Debug)]
 pub struct PhaseMeasure<'g> {
-    /// Whether it is Liouville's, which the frame of a holonomic system determines whatever the Lagrangian.
+    /// Whether the measure is Liouville's, which the frame of a holonomic system determines whatever the
+    /// Lagrangian.
     pub liouville: bool,
     /// The density N of N dx dy, positive at the start; none if 1/det b or det(∂f/∂x_D)/det b_I is not a short
     /// expression.
@@ -53,20 +54,20 @@ impl<'g> MeasureSearch<'g> {
     /// system](pc_nonholo::Constrained::free_system).
     ///
     /// Where forces other than those of L are functions of the position, or gyroscopic, phase volume grows
-    /// at the rate η_r (∂b_ir/∂x_i + c_rs^s) + ∂b_i0/∂x_i + c_0s^s, for all L: in (10) the terms with H
-    /// cancel, and those with c_rs^m by its antisymmetry. N = 1 is a density if this vanishes. If n = k and
-    /// rank b = k, the density is N = 1/det b, with which N dx dy is Liouville's dx dp: y = bᵀp. If n − k
+    /// at the rate η_r (∂b_ir/∂x_i + c_rs^s) + ∂b_i0/∂x_i + c_0s^s, for every L: in (10) the terms with H
+    /// cancel, and those with c_rs^m by its antisymmetry. N = 1 is a density if this rate vanishes. If n = k
+    /// and rank b = k, the density is N = 1/det b, with which N dx dy is Liouville's dx dp: y = bᵀp. If n − k
     /// functions f(t, x) are constant, then for any choice of as many dependent coordinates x_D, x_I being
     /// the others, the density is N = det(∂f/∂x_D)/det b_I: Liouville's on each surface f = const. If no f
-    /// are known, N is sought as a product of powers of coordinates, their sines and cosines. For dx dη it is
-    /// multiplied by det M. `positions` are functions f of a holonomic system, in addition to declared
-    /// integrals that depend on the position alone; `None` means that the system is not holonomic.
+    /// are known, N is sought as a product of powers of coordinates, their sines and cosines. For dx dη the
+    /// density is multiplied by det M. `positions` are functions f of a holonomic system, in addition to
+    /// declared integrals that depend on the position alone; `None` means that the system is not holonomic.
     ///
     /// Otherwise a density with these factors and those of [`invariant_measure`] is sought, then one that has
     /// momenta among its factors as well; this search is omitted for more than six quasi-velocities and for
     /// long equations.
     ///
-    /// `at` has values of time, state and parameters at which N is positive.
+    /// `at` gives values of time, state and parameters at which N is positive.
     ///
     /// # Errors
     /// The errors in deriving equations (9).
@@ -143,8 +144,8 @@ fn jumps(system: &System<'_>) -> bool {
     parts.iter().any(|&part| system.graph().applies(part, &state, |function| !function.is_continuous()))
 }
 
-/// The density whose measure (10), (11) leave invariant for any Lagrangian; `Some(None)` if it is not a short
-/// expression.
+/// The density of the measure that the motion (10), (11) leaves invariant for any Lagrangian; `Some(None)` if
+/// it is not a short expression.
 fn of_the_frame<'g>(system: &System<'g>, positions: &[Expr<'g>]) -> Option<Option<Expr<'g>>> {
     if !system.states().is_empty() || has_resistance(system) {
         return None;
@@ -231,7 +232,7 @@ fn has_resistance(system: &System<'_>) -> bool {
     (0..k).any(|s| (0..=s).any(|r| !(slopes[s][r] + slopes[r][s]).is_zero()))
 }
 
-/// ∂b_ir/∂x_i + c_rs^s for r = 0..k; N is a density if X_r N/N cancels these.
+/// ∂b_ir/∂x_i + c_rs^s for r = 0..k; N is a density if X_r N/N cancels these terms.
 fn growth<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
     let (graph, frame, structure) = (system.graph(), system.frame(), system.structure());
     let mut traces = vec![Vec::new(); frame.operators() + 1];
@@ -263,7 +264,7 @@ fn product_of_blocks<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<
     (!product.is_zero()).then_some(product)
 }
 
-/// The measure that a search for its factors finds, preferably one without momenta among them.
+/// The measure found by a search for its factors, preferably one without momenta among them.
 fn found<'g>(system: &System<'g>) -> Result<Option<InvariantMeasure<'g>>, AnalysisError> {
     let known = |error| match error {
         AnalysisError::Mech(error) if error.is_not_quadratic() => Ok(None),

@@ -25,8 +25,8 @@ impl<'g> ReducingMultiplier<'g> {
     /// which are Lagrange's, without a term from the constraints. Their volume dx dP, P = N p, is N^l dx dp,
     /// and with respect to the old time N^(l−1) dx dp is invariant: N is sought as a root of the density of
     /// an invariant measure. With two degrees of freedom and T quadratic in the velocities a multiplier
-    /// exists exactly if there is such a measure [Chaplygin 1911]; otherwise N is given only if the equations
-    /// are proved to be the same.
+    /// exists if and only if there is such a measure [Chaplygin 1911]; in other cases N is given only if the
+    /// equations are proved to be the same.
     ///
     /// `None` for systems that are not [Chaplygin's](Voronets::is_chaplygin) or depend on time.
     ///

@@ -4,7 +4,7 @@ use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 use pc_mech::{Matrix, MatrixError, MechError};
 
-/// The eigenvalues of a square matrix, as pairs of real and imaginary part.
+/// The eigenvalues of a square matrix, as pairs of real and imaginary parts.
 ///
 /// # Errors
 /// [`MatrixError::NoEigenvalues`] for a matrix with an entry that is not finite.
@@ -18,7 +18,7 @@ pub(crate) fn eigenvalues(matrix: &Matrix<f64>) -> Result<Vec<(f64, f64)>, MechE
     Ok(values.iter().map(|value| (value.re, value.im)).collect())
 }
 
-/// An eigenvalue, as a pair of real and imaginary part, with the components of an eigenvector as such pairs.
+/// An eigenvalue, as a pair of real and imaginary parts, with the components of an eigenvector as such pairs.
 pub(crate) type Eigenpair = ((f64, f64), Vec<(f64, f64)>);
 
 /// The eigenvalues of a square matrix, each with an eigenvector.

@@ -17,7 +17,7 @@ pub(crate) struct Iterate {
     pub(crate) values: Vec<f64>,
     /// ∂F/∂z
     pub(crate) slopes: Matrix<f64>,
-    /// The number of steps that were made.
+    /// The number of steps taken.
     pub(crate) iterations: usize,
 }
 
@@ -58,7 +58,7 @@ impl Iterate {
     }
 }
 
-/// Reduces |F(z)|, beginning at `start`, until it no longer decreases or `most` steps have been made. The
+/// Reduces |F(z)|, beginning at `start`, until it no longer decreases or `most` steps have been taken. The
 /// caller decides whether the residual counts as zero.
 ///
 /// `f` returns F(z) and ∂F/∂z; if it fails after a step, a shorter step is tried.

@@ -28,12 +28,13 @@ pub struct Routhian<'g> {
 }
 
 impl<'g> Routhian<'g> {
-    /// The Routhian of a system, in terms of the velocities of its coordinates whatever its quasi-velocities
+    /// The Routhian of a system, in terms of the velocities of its coordinates, whatever its quasi-velocities
     /// are. Coordinates are cyclic if neither L nor any force depends on them and no force acts along them.
-    /// The values of p_c are those at the start of the motion, given `at` as values of time and state.
+    /// The values of p_c are those at the start of the motion; `at` gives the time and the state there.
     ///
-    /// None if no coordinate is cyclic, if there are not as many quasi-velocities as coordinates, for systems
-    /// with first-order states or forces that are computed outside, and if L is not quadratic in the ẋ_c.
+    /// None if no coordinate is cyclic, if there are not as many quasi-velocities as coordinates, if the
+    /// system has first-order states or forces that are computed outside, or if L is not quadratic in the
+    /// ẋ_c.
     ///
     /// # Errors
     /// The errors of the change to velocities; [`ExprError`](pc_mech::ExprError) if p_c has no value.

@@ -11,8 +11,8 @@ const STEPS: usize = 1000;
 /// Numbers c, not all zero, for which W(c) = Σ c_i W_i is positive definite, with a least eigenvalue above
 /// `tolerance` |c|; `None` if there are none.
 ///
-/// The least eigenvalue φ(c) is concave, and the vᵀ W_i v, where v is its eigenvector, are a slope
-/// (supergradient) of it, since φ(c') ≤ vᵀ W(c') v for all c'. So each step cuts off half of the remaining
+/// The least eigenvalue φ(c) is concave, and the numbers vᵀ W_i v, where v is its eigenvector, form a slope
+/// (supergradient) of φ, since φ(c') ≤ vᵀ W(c') v for all c'. So each step cuts off half of the remaining
 /// part of the unit ball (the ellipsoid method of D. B. Yudin and A. S. Nemirovski), until a c is found or
 /// the slope shows that φ nowhere exceeds the tolerance.
 /// # Errors
@@ -60,7 +60,7 @@ fn single(forms: &[Matrix<f64>], tolerance: f64) -> Result<Option<Vec<f64>>, Mec
     Ok(None)
 }
 
-/// φ(c) with a slope of it; φ = +∞ on a space of dimension 0.
+/// φ(c), with a slope of φ there; φ = +∞ on a space of dimension 0.
 fn least_eigenvalue(forms: &[Matrix<f64>], c: &[f64]) -> Result<(f64, Vec<f64>), MechError> {
     let (values, vectors) = symmetric_eigenvalues(&combination(forms, c))?;
     let Some(&least) = values.first() else { return Ok((f64::INFINITY, vec![0.0; c.len()])) };

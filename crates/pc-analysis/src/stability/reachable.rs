@@ -14,7 +14,7 @@ const INDEPENDENT: f64 = 1e-8;
 
 /// The directions δy = E δz to the states that motions can reach: those that leave unchanged every function of the
 /// coordinates that is constant along all motions, such as the length of a quaternion or a constraint on
-/// positions. They are invariant under the first approximation, δż = Eᵀ A E δz.
+/// positions. These directions are invariant under the first approximation, δż = Eᵀ A E δz.
 #[derive(Clone, Debug)]
 pub(super) struct Reachable {
     /// E, orthonormal, with a row for each component that is not cyclic.

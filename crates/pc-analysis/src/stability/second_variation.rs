@@ -45,11 +45,11 @@ impl SecondVariation {
     /// The second variation of the energy at the steady motion `state`, (x, η), under the
     /// [integrals](pc_mech::System::integrals) of the system.
     ///
-    /// With d(H + λ_j I_j) = 0 there, λ by least squares, a second variation that is definite on the common
-    /// kernel of the dI_j proves that the steady motion is stable: H + λ_j I_j ± κ (I_j − I_j(y))² has a
-    /// strict extremum at y for large κ. This does not require the dI_j to be independent. If these are
-    /// linearly dependent, the λ_j are not determined, and a search is made for values for which the form is
-    /// definite.
+    /// With d(H + λ_j I_j) = 0 there, where λ is found by least squares, a second variation that is definite
+    /// on the common kernel of the dI_j proves that the steady motion is stable: H + λ_j I_j ± κ (I_j −
+    /// I_j(y))² has a strict extremum at y for large κ. This does not require the dI_j to be independent. If
+    /// the dI_j are linearly dependent, the λ_j are not determined, and values are sought for which the form
+    /// is definite.
     ///
     /// Stability means stability with respect to the [variables](SecondVariation::variables). Redundant
     /// coordinates are variables: their constraints, such as γ² = 1, must be among the integrals.
@@ -61,7 +61,8 @@ impl SecondVariation {
         SecondVariation::under(equations, equations.system().integrals(), state)
     }
 
-    /// The second variation under the given integrals with their names, functions of (x, η) and parameters.
+    /// The second variation under the given integrals, which are functions of (x, η) and parameters, with
+    /// their names.
     ///
     /// # Errors
     /// As [`at`](SecondVariation::at).
@@ -135,7 +136,7 @@ fn expand<'g>(
 
 /// The solutions λ + μ of d(H + λ_j I_j) = 0, and the deviations on which the second variation is tested.
 struct Multipliers {
-    /// λ by least squares.
+    /// λ, found by least squares.
     lambda: Vec<f64>,
     /// The μ with μ_j dI_j = 0, as columns.
     free: Matrix<f64>,
@@ -148,7 +149,7 @@ struct Multipliers {
 }
 
 impl Multipliers {
-    /// The multipliers for these expansions. `size` is that of the state; a rounding error of the state
+    /// The multipliers for these expansions. `size` is the size of the state; a rounding error of the state
     /// changes dH by d²H times that error.
     fn of(energy: &Expansion, integrals: &[Expansion], size: f64) -> Result<Multipliers, MechError> {
         let (n, count) = (energy.gradient.len(), integrals.len());

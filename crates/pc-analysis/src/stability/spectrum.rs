@@ -9,9 +9,11 @@ use crate::numeric::dense::{eigenvalues, norm, product};
 /// The verdict on the stability of an equilibrium or a steady motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Neighbouring motions approach it: all real parts are negative (Lyapunov's first method).
+    /// Neighbouring motions approach the steady motion: all real parts are negative (Lyapunov's first
+    /// method).
     AsymptoticallyStable,
-    /// Neighbouring motions stay close: an integral has a strict extremum there (Lyapunov's second method).
+    /// Neighbouring motions stay close to the steady motion: an integral has a strict extremum there
+    /// (Lyapunov's second method).
     Stable,
     /// Some neighbouring motion departs: a real part is positive (Lyapunov's first method).
     Unstable,
@@ -31,7 +33,7 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// An eigenvalue λ: a small deviation changes as e^λt.
+/// An eigenvalue λ: a small deviation varies as e^λt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Eigenvalue {
     /// The rate of growth.
@@ -44,7 +46,7 @@ pub struct Eigenvalue {
 ///
 /// Any eigenvalue routine returns a zero of multiplicity m in one Jordan block as m numbers of size ε^(1/m)
 /// |A|, some with a positive real part. Zeros in blocks are the rule here: a family of steady motions gives A
-/// a kernel, and an angle whose speed changes along the family gives a block of size two. Therefore they are
+/// a kernel, and an angle whose speed changes along the family gives a block of size two. Therefore zeros are
 /// split off by orthogonal transformations first: with A = U Σ Vᵀ of rank r, A and its compression to the
 /// image, the r × r matrix U_rᵀ A U_r, have the same eigenvalues except for n − r zeros; this is repeated
 /// until the rest is regular. The numbers split off are [`zero_blocks`](Spectrum::zero_blocks) (V. N.

@@ -57,7 +57,7 @@ impl SteadyOptions {
         SteadyOptions { fixed: names.into_iter().map(Into::into).collect(), ..self }
     }
 
-    /// Whether that component keeps its value.
+    /// Whether the component keeps its value.
     pub(crate) fn holds(&self, name: &str) -> bool {
         self.fixed.iter().any(|fixed| fixed == name)
     }
@@ -118,8 +118,8 @@ impl SteadyMotion {
         })
     }
 
-    /// The steady motion among the states with g(y) = 0, for coordinates that are not independent, for
-    /// example γ² = 1.
+    /// The steady motion among the states with g(y) = 0, for coordinates that are not independent, such as
+    /// those with γ² = 1.
     ///
     /// `surface` returns g(y), m numbers, and ∂g/∂y, m × n, for a state y of n components. Steady motions
     /// remain steady only if the functions g are constant along the motion.
@@ -187,8 +187,8 @@ impl SteadyMotion {
 /// Its [`Spectrum`] is that of all components, including cyclic coordinates.
 ///
 /// # Errors
-/// [`ShapeError`](pc_mech::ShapeError); [`EvaluationError::NotCompiled`] without the Jacobian; if f is not
-/// defined, as [`rhs`](VectorField::rhs).
+/// [`ShapeError`](pc_mech::ShapeError); [`EvaluationError::NotCompiled`] without the Jacobian; the errors of
+/// [`rhs`](VectorField::rhs) if f is not defined.
 pub fn first_approximation(motion: &mut Motion, t: f64, y: &[f64]) -> Result<Matrix<f64>, AnalysisError> {
     let n = motion.dim();
     shape("the state", y.len(), n)?;
@@ -246,7 +246,7 @@ fn components(motion: &Motion, names: &[String]) -> Result<Vec<usize>, AnalysisE
         .collect()
 }
 
-/// The indices of the cyclic coordinates: the named ones, or all.
+/// The indices of the cyclic coordinates: of the named ones, or of all.
 fn cyclic_among(motion: &Motion, named: Option<&[String]>) -> Result<Vec<usize>, AnalysisError> {
     let pattern =
         motion.sparsity().ok_or(MechError::Evaluation(EvaluationError::NotCompiled { what: "Jacobian" }))?;

@@ -19,7 +19,8 @@ const MOST_WORK: usize = 20_000;
 /// start.
 const MOST_STEPS: usize = 50;
 
-/// The residual at which the integrals count as having these values; the search that follows is exact.
+/// The residual at which the integrals count as having their values at the start; the search that follows is
+/// exact.
 const ON_SURFACE: f64 = 1e-6;
 
 /// The largest number of components of a state: beyond it, each step of Newton's method takes some tenths of
@@ -47,7 +48,7 @@ pub struct FoundSteadyMotion {
     /// The motion.
     pub motion: NearbySteadyMotion,
     /// The dimension of the family of steady motions with the same integrals, of which this is the nearest to the
-    /// start; 0 if it is isolated.
+    /// start; 0 if the motion is isolated.
     pub family: usize,
 }
 
@@ -133,7 +134,7 @@ impl SteadyMotions {
     }
 }
 
-/// The results so far.
+/// The motions found so far.
 struct Found {
     /// The motions, each with its full state.
     list: Vec<(Vec<f64>, FoundSteadyMotion)>,
@@ -143,7 +144,7 @@ struct Found {
 }
 
 impl Found {
-    /// Searches from one guess, and adds the result if it is new.
+    /// Searches from one guess, and adds the motion that is found if it is new.
     fn look<'g>(
         &mut self,
         seeker: &Seeker<'_, 'g>,

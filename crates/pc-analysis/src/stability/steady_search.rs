@@ -50,7 +50,7 @@ pub struct NearbySteadyMotion {
 pub struct EnergyCriterion {
     /// Stable, or undecided.
     pub verdict: Verdict,
-    /// Its variables, unless they are all components that are not cyclic.
+    /// The variables of the criterion, unless they are all components that are not cyclic.
     pub variables: Option<Vec<String>>,
 }
 
@@ -59,14 +59,14 @@ pub struct EnergyCriterion {
 pub enum Stability {
     /// The first approximation decides.
     ByFirstApproximation(Verdict),
-    /// It is stable by the second variation of the energy.
+    /// The motion is stable by the second variation of the energy.
     BySecondVariation {
-        /// Its variables, unless they are all components that are not cyclic.
+        /// The variables of the criterion, unless they are all components that are not cyclic.
         variables: Option<Vec<String>>,
     },
-    /// By the first approximation it is asymptotically stable, except in neutral directions.
+    /// By the first approximation the motion is asymptotically stable, except in neutral directions.
     AsymptoticBut {
-        /// Their number.
+        /// The number of neutral directions.
         directions: usize,
     },
     /// No criterion decides.
@@ -88,7 +88,7 @@ pub enum SteadySearch {
     Nonlinear,
     /// The state has too many components.
     TooLarge {
-        /// Their number.
+        /// The number of neutral directions.
         components: usize,
     },
     /// Newton's method did not converge, or converged far from the start.
@@ -220,7 +220,7 @@ impl<'a, 'g> Seeker<'a, 'g> {
         (largest(&found.first_approximation) <= self.steepest).then_some(found)
     }
 
-    /// The motion as names and numbers, with the results for its stability.
+    /// The motion as names and numbers, with the results on its stability.
     pub(crate) fn described(
         &self,
         found: &SteadyMotion,
@@ -265,7 +265,7 @@ impl<'a, 'g> Seeker<'a, 'g> {
         Ok(Reachable::of(found, &kept, &normals)?)
     }
 
-    /// The length of the vector of those components of the start that are not cyclic.
+    /// The length of the vector formed by those components of the start that are not cyclic.
     fn size(&self, found: &SteadyMotion, start: &[f64]) -> f64 {
         self.kept(found, start).iter().map(|(_, _, start)| start * start).sum::<f64>().sqrt()
     }
@@ -279,7 +279,7 @@ impl<'a, 'g> Seeker<'a, 'g> {
 }
 
 /// The differentials of the integrals with respect to the components that are not cyclic. An integral that
-/// contains a cyclic coordinate is left out: it is not a function of these components alone.
+/// contains a cyclic coordinate is left out: it is not a function of the other components alone.
 fn differentials<'g>(
     system: &System<'g>,
     found: &SteadyMotion,

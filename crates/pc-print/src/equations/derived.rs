@@ -15,7 +15,8 @@ pub struct Derived<'g> {
     pub vanishing: Vec<Expr<'g>>,
     /// The constraints with their kinds.
     pub constraints: Vec<(Constraint<'g>, ConstraintKind)>,
-    /// The definitions of the vanishing quasi-velocities in terms of velocities, if they are known.
+    /// The definitions of the vanishing quasi-velocities in terms of velocities, if these definitions are
+    /// known.
     pub definitions: Vec<(Expr<'g>, Expr<'g>)>,
     /// The quasi-velocities that are not those of the model, each with its definition.
     pub quasi_velocities: Vec<(Expr<'g>, Expr<'g>)>,
@@ -26,10 +27,10 @@ pub struct Derived<'g> {
 }
 
 impl<'g> Derived<'g> {
-    /// The equations in a form, with the name of the form.
+    /// The equations in a given form, with the name of the form.
     ///
     /// # Errors
-    /// [`ModelError`] if there are no such equations.
+    /// [`ModelError`] if the equations have no such form.
     pub fn new(form: Form, assembly: &Assembly<'g>) -> Result<(&'static str, Derived<'g>), ModelError> {
         match form {
             Form::Reduced | Form::LiePoisson => Derived::in_free_form(form, Variables::Reduced, assembly),

@@ -15,7 +15,7 @@ pub enum Form {
     Voronets,
     /// Equations for the quasi-velocities, omitting coordinates on which nothing depends: Euler–Poincaré.
     Reduced,
-    /// Equations for the momenta of these quasi-velocities: Lie–Poisson.
+    /// Equations for the momenta, omitting coordinates on which nothing depends: Lie–Poisson.
     LiePoisson,
     /// Equations for quasi-velocities that are orthonormal in the kinetic metric.
     Orthonormal,
@@ -36,7 +36,8 @@ impl Form {
         Form::Hamel,
     ];
 
-    /// The variables of its state; none for the forms in velocities, which serve only for printing.
+    /// The variables of the state in this form; none for the forms in velocities, which serve only for
+    /// printing.
     pub fn variables(self) -> Option<Variables> {
         Some(match self {
             Form::Poincare => Variables::QuasiVelocities,

@@ -24,7 +24,7 @@ impl Operations {
         Operations::counted(system, system.quasi_velocities(), &rates)
     }
 
-    /// The operations of the canonical equations; if these are not closed, for given values of the
+    /// The operations of the canonical equations; if these are not closed, those for given values of the
     /// quasi-velocities.
     ///
     /// # Errors
@@ -71,7 +71,7 @@ fn rates_of_states<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
 }
 
 impl Operations {
-    /// One line of text for free and one for bound parameters.
+    /// One line of text for free parameters and one for bound ones.
     pub fn lines(&self) -> Vec<String> {
         vec![counted("parameters free ", &self.free), counted("parameters bound", &self.bound)]
     }

@@ -69,8 +69,8 @@ pub enum Balance<'p> {
         rates: Vec<Expr<'p>>,
         /// y = ∂L/∂η as functions of η.
         of_velocities: Vec<Expr<'p>>,
-        /// η as functions of y; none if the equations are not closed, in which case η in them denotes the
-        /// solution of y = ∂L/∂η.
+        /// η as functions of y; none if the equations are not closed, in which case η in the equations
+        /// denotes the solution of y = ∂L/∂η.
         velocities: Option<Vec<Expr<'p>>>,
         /// r in the form in which it is computed.
         right: Vec<Expr<'p>>,
@@ -90,7 +90,7 @@ pub struct Brackets<'p> {
     pub commute: bool,
     /// Whether components along nonholonomic constraints are left out.
     pub left_out: bool,
-    /// The name of their algebra, if it is a known one.
+    /// The name of the algebra of the operators, if it is a known one.
     pub algebra: Option<&'static str>,
 }
 
@@ -99,7 +99,7 @@ pub struct Brackets<'p> {
 pub struct Bracket<'p> {
     /// r < s
     pub pair: [usize; 2],
-    /// The c_rs^m that are not zero, each with its m.
+    /// The coefficients c_rs^m that are not zero, each with its m.
     pub components: Vec<(usize, Expr<'p>)>,
 }
 
@@ -208,8 +208,8 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
         if self.page.size(&products) > longest { right.to_vec() } else { products }
     }
 
-    /// The energy; if it is long, as ½ M_rs η_r η_s plus the rest, provided this is shorter in view of the printed
-    /// `mass` matrix.
+    /// The energy; if it is long, it is written as ½ M_rs η_r η_s plus the rest, provided that this is shorter,
+    /// since the `mass` matrix is printed anyway.
     fn energy(&self, equations: &Equations<'g>, mass: &Matrix<Expr<'p>>) -> Expr<'p> {
         let (graph, eta) = (self.system.graph(), self.system.quasi_velocities());
         let energy = equations.energy();
@@ -237,8 +237,8 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
         if is_long && beside(divided) < beside(whole) { divided } else { whole }
     }
 
-    /// Each ẋ_i with its value, with sines and cosines merged if that is shorter: for linkages the law of
-    /// sines results.
+    /// Each ẋ_i with its value, with sines and cosines merged if that is shorter: for linkages this gives the
+    /// law of sines.
     fn rates(&self, values: &[Expr<'g>]) -> Vec<(Expr<'p>, Expr<'p>)> {
         let (graph, x) = (self.system.graph(), self.system.frame().coordinates());
         let plain = self.all(values);

@@ -26,7 +26,7 @@ pub(crate) fn page(heading: &str, sheet: &Sheet<'_>, layout: &Layout, page: &Gra
     text + "\\endgroup\n"
 }
 
-/// The remark on a part.
+/// The remark that belongs to a part.
 pub(crate) fn remark(sheet: &Sheet<'_>, heading: Heading) -> Option<&'static str> {
     match heading {
         Heading::Energy | Heading::Hamiltonian => sheet.energy_remark,
@@ -34,7 +34,7 @@ pub(crate) fn remark(sheet: &Sheet<'_>, heading: Heading) -> Option<&'static str
     }
 }
 
-/// The parts, each with its display unless it has nothing to display.
+/// The parts, each with its display, except parts that have nothing to display.
 pub(crate) fn displays<'a, 'p>(
     operators: &'a [String],
     layout: &'a Layout,
@@ -55,7 +55,7 @@ pub(crate) fn displays<'a, 'p>(
     parts.with_names().map(display).collect()
 }
 
-/// Puts some lines into an environment that aligns them.
+/// Puts lines into an environment that aligns them.
 pub(crate) fn aligned(lines: &[String]) -> String {
     format!("\\begin{{align*}}\n{}\n\\end{{align*}}", lines.join(" \\\\\n"))
 }
@@ -67,7 +67,7 @@ struct Latex<'a, 'p> {
     layout: &'a Layout,
     names: &'a Names<'p>,
     set: Written,
-    /// The same expressions in plain characters, whose widths decide where lines are broken.
+    /// The expressions of the sheet in plain characters, whose widths decide where lines are broken.
     plain: Written,
 }
 

@@ -127,7 +127,7 @@ fn flowed(terms: Terms, begin: usize, width: usize) -> Vec<String> {
     lines.into_iter().map(|(line, _)| line).collect()
 }
 
-/// The parts, each with its table unless it has nothing to display.
+/// The parts, each with its table, except parts that have nothing to display.
 pub(crate) fn displays<'a, 'p>(
     operators: &'a [String],
     layout: &'a Layout,
@@ -155,7 +155,7 @@ struct Set<'a, 'p> {
     layout: &'a Layout,
     names: &'a Names<'p>,
     set: Written,
-    /// The same expressions in plain characters, whose widths decide where lines are broken.
+    /// The expressions of the sheet in plain characters, whose widths decide where lines are broken.
     plain: Written,
 }
 

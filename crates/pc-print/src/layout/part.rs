@@ -14,7 +14,7 @@ pub(crate) struct Part<'p> {
     pub(crate) rows: Vec<Row<'p>>,
 }
 
-/// The subject of a part.
+/// What a part is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Heading {
     Constraints,
@@ -63,7 +63,7 @@ pub(crate) enum Row<'p> {
     Equation { left: Expr<'p>, right: Expr<'p> },
     /// [X_r, X_s] = Σ c X_m
     Bracket(Bracket<'p>),
-    /// X_s = Σ b_is ∂/∂x_i, with the name of η_s; X_0 has none.
+    /// X_s = Σ b_is ∂/∂x_i, with the name of η_s; for X_0 there is no name.
     Operator { quasi_velocity: Option<String>, components: Vec<(Expr<'p>, Expr<'p>)> },
     /// Q_s = value, identified by the name of η_s.
     Force { quasi_velocity: String, value: Expr<'p> },
@@ -88,7 +88,7 @@ impl<'p> Row<'p> {
     }
 }
 
-/// The parts of a page with the names they use.
+/// The parts of a page, with the names that they use.
 pub(crate) struct Parts<'p> {
     pub(crate) parts: Vec<Part<'p>>,
     pub(crate) names: Names<'p>,

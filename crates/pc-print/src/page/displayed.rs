@@ -34,7 +34,7 @@ pub struct Display {
 pub struct DisplayedPart {
     /// The heading.
     pub title: &'static str,
-    /// The formulas, if there are any.
+    /// The formulas under the heading, if there are any.
     pub display: Option<Display>,
     /// Notes on the formulas.
     pub notes: Vec<String>,
@@ -47,7 +47,7 @@ pub struct DisplayedEquations {
     pub name: String,
     /// Its parts.
     pub parts: Vec<DisplayedPart>,
-    /// All equations in plain text and LaTeX instead of parts, if they are written body by body.
+    /// All equations in plain text and LaTeX, in place of the parts, if they are written body by body.
     pub plain: Option<Display>,
     /// The cost of a right-hand side, line by line.
     pub operations: Vec<String>,
@@ -56,15 +56,15 @@ pub struct DisplayedEquations {
 /// A part of the theory of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DisplayedTheory {
-    /// Its name for programs.
+    /// The name of the part, for programs.
     pub key: &'static str,
     /// The heading.
     pub title: &'static str,
-    /// The meanings of the names in its formulas.
+    /// The meanings of the names in the formulas of the part.
     pub names: Option<String>,
     /// Its contents.
     pub entries: Vec<DisplayedEntry>,
-    /// All its formulas in LaTeX.
+    /// All formulas of the part in LaTeX.
     pub latex: Option<String>,
 }
 
@@ -75,7 +75,7 @@ pub struct DisplayedEntry {
     pub name: Option<String>,
     /// A `math` element, if there are formulas.
     pub mathml: Option<String>,
-    /// The verdict on them, in words: proved, disproved, open.
+    /// The verdict on the formulas, in words: proved, disproved or open.
     pub verdict: Option<String>,
     /// Names with their numerical values.
     pub values: Vec<String>,

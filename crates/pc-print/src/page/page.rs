@@ -51,7 +51,7 @@ pub fn page(
     })
 }
 
-/// The sheet of equations in a form, with the name of the form and the cost of a right-hand side.
+/// The sheet of equations in a given form, with the name of the form and the cost of a right-hand side.
 pub(crate) fn sheet_of<'g, 'p>(
     form: Form,
     name: &'static str,

@@ -63,7 +63,8 @@ impl<'a, 'g> Basis<'a, 'g> {
     }
 }
 
-/// The same for a model whose equations are not at hand.
+/// The result of an analysis, with its error located in the same way, for a model whose equations are not at
+/// hand.
 pub(crate) fn placed<T>(assembly: &Assembly<'_>, found: Result<T, AnalysisError>) -> Result<T, ModelError> {
     found.or_else(|error| match error {
         AnalysisError::Nonholo(error) => assembly.placed(Err(error)),

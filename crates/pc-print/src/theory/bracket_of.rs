@@ -10,8 +10,9 @@ use crate::theory::basis::{NONLINEAR, placed};
 ///
 ///   (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m,
 ///
-/// where y_s = ∂L/∂η_s are the momenta. It is returned as a function of time, coordinates and the independent
-/// quasi-velocities. Under nonholonomic constraints it is the almost-Poisson bracket of the independent momenta.
+/// where y_s = ∂L/∂η_s are the momenta. The bracket is returned as a function of time, coordinates and the
+/// independent quasi-velocities. Under nonholonomic constraints it is the almost-Poisson bracket of the
+/// independent momenta.
 ///
 /// # Errors
 /// [`ModelError`], located at the position in `f`, `g` or the model that rules out a bracket: the velocities have to be

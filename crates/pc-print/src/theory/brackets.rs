@@ -96,8 +96,8 @@ fn jacobi_by_frame<'g>(ground: &Basis<'_, 'g>) -> Entry<'g> {
     Entry::default().with_on(JACOBI, Verdict::of(Identity::of(worst)))
 }
 
-/// The verdict on Jacobi's identity: disproved by the first three variables that violate it, if there are
-/// any.
+/// The verdict on Jacobi's identity: it is disproved by the first three variables that violate the identity,
+/// if there are any.
 fn jacobi<'g>(ground: &Basis<'_, 'g>, bracket: &PoissonBracket<'g>) -> Entry<'g> {
     if bracket.variables().len() > MOST_VARIABLES {
         return Entry::words("too many variables to test in triples").with_on(JACOBI, Verdict::Open);

@@ -17,11 +17,11 @@ pub struct Theory<'g> {
 /// A part of the description.
 #[derive(Clone, Debug)]
 pub(crate) struct Section<'g> {
-    /// Its name for programs.
+    /// The name of the part, for programs.
     pub(crate) key: &'static str,
-    /// Its title in print.
+    /// The title of the part in print.
     pub(crate) title: &'static str,
-    /// The names first used here, each with its meaning.
+    /// The names first used in this part, each with its meaning.
     pub(crate) names: Vec<(Side<'g>, Side<'g>)>,
     pub(crate) entries: Vec<Entry<'g>>,
 }
@@ -33,29 +33,29 @@ pub(crate) struct Entry<'g> {
     pub(crate) formulas: Vec<(Side<'g>, Side<'g>)>,
     /// Names with their numerical values.
     pub(crate) values: Vec<(String, f64)>,
-    /// The verdict, with its subject if that is not the formulas.
+    /// The verdict, with its subject if it is not a verdict on the formulas.
     pub(crate) verdict: Option<(Option<&'static str>, Verdict)>,
     /// Sentences that contain no formulas.
     pub(crate) words: Vec<String>,
-    /// Real and imaginary parts of the eigenvalues that belong to it.
+    /// Real and imaginary parts of the eigenvalues that belong to this entry.
     pub(crate) spectrum: Vec<(f64, f64)>,
 }
 
 /// Whether a claim holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Verdict {
-    /// It holds for all values of the parameters.
+    /// The claim holds for all values of the parameters.
     Proved,
-    /// It holds for the present values of the parameters.
+    /// The claim holds for the present values of the parameters.
     ProvedHere,
-    /// It does not hold: numerically, the terms of an identity leave this fraction of their size.
+    /// The claim does not hold: numerically, the terms of an identity add up to this fraction of their size.
     Disproved {
         /// The fraction, from 0 to 1.
         margin: f64,
     },
     /// A motion is not stable: others depart from it.
     Unstable {
-        /// The largest real part of an eigenvalue.
+        /// The largest real part of any eigenvalue.
         growth: f64,
     },
     /// Neither.
@@ -110,7 +110,7 @@ impl<'g> Side<'g> {
         Side { expression: Some(e), ..Side::default() }
     }
 
-    /// A text, as `write` gives it in each style.
+    /// A text, as `write` produces it in each style.
     pub(crate) fn written(write: impl Fn(Style) -> String) -> Side<'g> {
         Side {
             expression: None,

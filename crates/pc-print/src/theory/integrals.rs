@@ -77,7 +77,8 @@ fn energy_of_all<'g>(assembly: &Assembly<'g>, equations: &Equations<'g>) -> Opti
     Some(graph.substitute(&[assembly.system.energy()], &known)[0])
 }
 
-/// The integrals that the theory lists, those found by the ansatz at the end, and the extent of the search.
+/// The integrals that the theory lists, with those found by the ansatz at the end, and the extent of the
+/// search.
 pub(crate) fn found<'g>(
     ground: &Basis<'_, 'g>,
     model: &Model,

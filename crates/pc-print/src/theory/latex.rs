@@ -12,7 +12,7 @@ use crate::words::words::short;
 /// The largest number of characters on a line of source, about the width of a page.
 const WIDTH: usize = 140;
 
-/// A display for each section, with a comment above it; sentences are comments below it.
+/// A display for each section, with a comment above it; sentences are written as comments below it.
 pub(crate) fn written(theory: &Theory<'_>) -> String {
     let mut page = format!("% {}: theory (needs amsmath)\n", one_line(&theory.title));
     for section in &theory.sections {

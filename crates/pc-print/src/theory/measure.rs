@@ -51,7 +51,7 @@ fn open<'g>(words: &str) -> Entry<'g> {
     Entry::words(words).with(Verdict::Open)
 }
 
-/// The section on N in dτ = N dt, and on the Lagrangian in that time.
+/// The section on N in dτ = N dt, and on the Lagrangian in the new time τ.
 pub(crate) fn multiplier<'g>(ground: &Basis<'_, 'g>) -> Section<'g> {
     let section = |entries| Section {
         key: "reducing_multiplier",
@@ -83,8 +83,8 @@ pub(crate) fn multiplier<'g>(ground: &Basis<'_, 'g>) -> Section<'g> {
     ])
 }
 
-/// Chaplygin's reducing multiplier of a model; none if none is found, if there are no equations of Voronets'
-/// form, or if they have no closed form.
+/// Chaplygin's reducing multiplier of a model; none if it is not found, if there are no equations of
+/// Voronets' form, or if they have no closed form.
 pub fn reducing_multiplier<'g>(assembly: &Assembly<'g>) -> Option<ReducingMultiplier<'g>> {
     ReducingMultiplier::of(&voronets(assembly)?).ok()?
 }

@@ -3,7 +3,7 @@
 /// Options of the theory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TheoryOptions {
-    /// The largest degree in the velocities of the integrals that are sought, at least 1.
+    /// The largest degree, in the velocities, of the integrals sought; at least 1.
     pub degree: u32,
     /// Functions of the coordinates by which the coefficients of these integrals may be multiplied, in the
     /// language of the model.

@@ -25,8 +25,8 @@ pub(crate) fn written(theory: &Theory<'_>) -> String {
     underlined(&format!("{}: theory", one_line(&theory.title))) + &sections.join("\n")
 }
 
-/// The lines of an entry: its name and its formulas with their verdict, then the remaining lines, indented
-/// further.
+/// The lines of an entry: its name and its formulas with their verdict, followed by the remaining lines,
+/// indented further.
 fn lines(entry: &Entry<'_>) -> Vec<String> {
     let mut verdict = entry.verdict.map(|(subject, verdict)| match subject {
         None => verdict.in_words(),

@@ -1,4 +1,4 @@
-//! Foreign text made harmless: its characters cannot control a terminal.
+//! Foreign text made harmless, so that its characters cannot control a terminal.
 
 use std::borrow::Cow;
 use std::fmt::Write;

@@ -2,7 +2,7 @@
 
 use crate::words::lines::columns;
 
-/// A number in at most `digits` significant digits, without superfluous zeros.
+/// A number with at most `digits` significant digits and without superfluous zeros.
 pub fn short(value: f64, digits: usize) -> String {
     let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
     let size = rounded.abs();
@@ -13,7 +13,7 @@ pub fn short(value: f64, digits: usize) -> String {
     }
 }
 
-/// A small number, such as a residual or a drift, in two digits.
+/// A small number, such as a residual or a drift, to two digits.
 pub fn small(value: f64) -> String {
     if value == 0.0 { "0".to_owned() } else { format!("{value:.1e}") }
 }
@@ -39,7 +39,7 @@ pub fn assignments<'a>(pairs: impl IntoIterator<Item = (&'a str, f64)>, width: u
     wrapped(pairs.into_iter().map(|(name, value)| format!("{name} = {}", short(value, 10))), width)
 }
 
-/// `label`, padded to `width`, followed by the first line; further lines are indented by as much.
+/// `label`, padded to `width`, followed by the first line; further lines are indented by the same width.
 pub fn labelled(label: &str, width: usize, lines: &[String]) -> String {
     let mut text = String::new();
     for (i, line) in lines.iter().enumerate() {

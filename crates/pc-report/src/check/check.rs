@@ -243,8 +243,8 @@ impl<'g> Check<'g> {
     }
 }
 
-/// The algebra of the operators in words; if it depends on the parameters, it is that for their present
-/// values.
+/// The algebra of the operators in words; if the algebra depends on the parameters, it is given for their
+/// present values.
 fn algebra(system: &System<'_>) -> String {
     let (always, bound) = (system.structure(), system.with_parameters_bound());
     match bound.structure().are_constant() && !always.are_constant() {
@@ -253,7 +253,7 @@ fn algebra(system: &System<'_>) -> String {
     }
 }
 
-/// States in words whether an identity holds, given its numerical residual relative to its terms.
+/// Says in words whether an identity holds, given its numerical residual relative to its terms.
 pub(super) fn held(residual: f64) -> String {
     match Identity::of(residual) {
         Identity::Proved => "holds identically".to_owned(),

@@ -27,7 +27,7 @@ pub(super) fn constraints(frame: &FrameFacts<'_>) -> Option<String> {
 }
 
 /// The holonomic quasi-velocities, on lines of `width` characters; none if the frame does not determine which
-/// these are.
+/// quasi-velocities are holonomic.
 pub(super) fn holonomic(frame: &FrameFacts<'_>, width: usize) -> Vec<String> {
     if frame.lagrangian && !frame.holonomy.is_empty() {
         return vec!["all, the velocities of the coordinates".to_owned()];

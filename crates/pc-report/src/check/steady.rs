@@ -94,7 +94,7 @@ pub(super) fn object(search: &SteadySearch) -> Value {
 /// Numbers up to this size count as zero: Newton's method leaves such remainders in place of zeros.
 const ZERO: f64 = 1e-9;
 
-/// A number in six digits; remainders that Newton's method leaves in place of zeros are printed as zero.
+/// A number to six digits; remainders that Newton's method leaves in place of zeros are printed as zero.
 fn rounded(value: f64) -> String {
     if value.abs() <= ZERO { "0".to_owned() } else { short(value, 6) }
 }

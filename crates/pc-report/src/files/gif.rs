@@ -19,7 +19,7 @@ const MOST: usize = 250;
 /// look the same.
 const SPEED: i32 = 10;
 
-/// The indices of those stills, which are at `times`, that show the motion at its true speed.
+/// The indices of the stills that show the motion at its true speed, given the `times` of all stills.
 pub fn stills(times: &[f64]) -> Vec<usize> {
     let (Some(first), Some(last)) = (times.first(), times.last()) else { return Vec::new() };
     let span = last - first;
@@ -28,7 +28,7 @@ pub fn stills(times: &[f64]) -> Vec<usize> {
     (0..=intervals).map(|i| nearest(times, time(i))).collect()
 }
 
-/// The index of that one of `times` that is nearest to `time`.
+/// The index of the entry of `times` that is nearest to `time`.
 pub fn nearest(times: &[f64], time: f64) -> usize {
     let distance = |&i: &usize| (times[i] - time).abs();
     (0..times.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)

@@ -22,7 +22,7 @@ impl Glyphs {
         Face::parse(dejavu::sans::regular(), 0).map(|face| Glyphs { face }).map_err(|_| PictureError::Font)
     }
 
-    /// The number of units of the font per height of a text.
+    /// The number of units of the font that equal the height of a text.
     pub(super) fn units(&self) -> f64 {
         f64::from(self.face.units_per_em())
     }
@@ -46,7 +46,7 @@ impl Glyphs {
         placed
     }
 
-    /// The distance from a character to the next.
+    /// The distance from one character to the next.
     pub(super) fn advance(&self, glyph: GlyphId) -> f64 {
         f64::from(self.face.glyph_hor_advance(glyph).unwrap_or(0))
     }

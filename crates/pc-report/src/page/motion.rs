@@ -11,8 +11,8 @@ const MOST_CHARTS: usize = 8;
 /// The largest number of points of a curve.
 const MOST_POINTS: usize = 1500;
 
-/// Charts ordered by kind, charts of the most informative pairs of columns, one column against the other,
-/// then the summary.
+/// Charts ordered by kind, followed by charts of the most informative pairs of columns, one column plotted
+/// against the other, and then the summary.
 pub(super) fn motion(record: &Recording, pairs: &[(String, String)]) -> String {
     let mut shown = String::new();
     if let Some(remark) = &record.remark {

@@ -1,4 +1,4 @@
-//! The most informative pairs of columns of a motion, to be drawn one against the other.
+//! The most informative pairs of columns of a motion, to be plotted against each other.
 
 use pc_model::Assembly;
 

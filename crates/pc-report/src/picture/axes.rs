@@ -18,19 +18,19 @@ impl Axis {
         Axis { low, high, from, to }
     }
 
-    /// The point at which a value lies.
+    /// The point that represents a value.
     pub(crate) fn place(&self, value: f64) -> f64 {
         self.from + (value - self.low) / (self.high - self.low) * (self.to - self.from)
     }
 
-    /// The axis, widened about its middle until a point corresponds to this difference of values.
+    /// The axis, widened about its middle until one point corresponds to this difference in value.
     pub(crate) fn widened_to(&self, per_point: f64) -> Axis {
         let half = per_point * (self.to - self.from).abs() / 2.0;
         let middle = f64::midpoint(self.low, self.high);
         Axis { low: middle - half, high: middle + half, ..*self }
     }
 
-    /// The difference of values that corresponds to a point.
+    /// The difference in value that corresponds to one point.
     pub(crate) fn per_point(&self) -> f64 {
         (self.high - self.low) / (self.to - self.from).abs()
     }
@@ -103,7 +103,7 @@ fn linear(value: f64) -> String {
     short(value, 5).replace('-', "−")
 }
 
-/// The text of 10 to an integer power.
+/// The text for 10 raised to an integer power.
 fn power(exponent: f64) -> String {
     let raised = |c: char| match c {
         '-' => '⁻',

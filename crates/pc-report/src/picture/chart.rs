@@ -1,4 +1,4 @@
-//! The drawing of a panel: axes, lines through round numbers, and contents.
+//! The drawing of a panel: axes, grid lines at round numbers, and contents.
 
 use crate::picture::axes::{Axis, label, range, widened};
 use crate::picture::drawing::{Anchor, Drawing, Ink};
@@ -9,7 +9,7 @@ use crate::picture::simplify::simplified;
 const MOST_EVENTS: usize = 60;
 /// The width of the scale of colours beside cells, including its numbers.
 const LEGEND: f64 = 96.0;
-/// The colours of values, the lowest first [Smith, van der Walt 2015].
+/// The colours that represent values, those of the lowest values first [Smith, van der Walt 2015].
 const COLOURS: [[u8; 3]; 9] = [
     [68, 1, 84],
     [71, 44, 122],
@@ -187,7 +187,7 @@ impl Panel {
         }
     }
 
-    /// Draws numbers beside the axes, and lines through them.
+    /// Draws numbers beside the axes, and grid lines at these numbers.
     fn mesh(&self, drawing: &mut Drawing, frame: Frame, (across, up): (&Axis, &Axis), size: f64) {
         let is_open = !matches!(self.content, Content::Cells { .. });
         for (value, label) in up.labels(self.up.1, count(frame.bottom - frame.top, 38.0)) {
@@ -216,7 +216,7 @@ impl Panel {
 /// The range from −π to π, slightly widened.
 const ANGLES: (f64, f64) = (-1.03 * std::f64::consts::PI, 1.03 * std::f64::consts::PI);
 
-/// The number of labels along a length if each takes the length `each`; at least two.
+/// The number of labels that fit along a length if each takes up the length `each`; at least two.
 fn count(length: f64, each: f64) -> usize {
     ((length / each) as usize).max(2)
 }

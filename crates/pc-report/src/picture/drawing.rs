@@ -18,14 +18,14 @@ pub enum Shape {
     Line {
         /// The points.
         points: Vec<[f64; 2]>,
-        /// Its colour and width.
+        /// The colour and width of the line.
         ink: Ink,
     },
     /// A filled rectangle.
     Area {
-        /// Its upper left corner.
+        /// The upper left corner of the area.
         from: [f64; 2],
-        /// Its lower right corner.
+        /// The lower right corner of the area.
         to: [f64; 2],
         /// Its colour.
         ink: Ink,
@@ -39,9 +39,9 @@ pub enum Shape {
     },
     /// Text on one line.
     Text {
-        /// The position of its beginning, its middle, or its end, on its base line.
+        /// The position of the beginning, the middle or the end of the text, on its baseline.
         at: [f64; 2],
-        /// The point of the text that is at that position.
+        /// The point of the text that lies at this position.
         anchor: Anchor,
         /// The height of the font.
         size: f64,
@@ -73,7 +73,7 @@ pub enum Ink {
     Soft,
     /// Axes.
     Axis,
-    /// Lines through round numbers.
+    /// Grid lines at round numbers.
     Grid,
     /// Lines at the times of events.
     Event,
@@ -101,7 +101,7 @@ impl Ink {
     /// The number of distinguishable curves.
     pub(crate) const CURVES: usize = COLOURS.len();
 
-    /// Its red, green and blue on white.
+    /// The red, green and blue components of its colour on a white background.
     pub fn colour(self) -> [u8; 3] {
         match self {
             Ink::Text | Ink::Rod => [29, 36, 48],

@@ -141,7 +141,7 @@ fn over_time(record: &Recording, title: &str, scale: Scale, curves: Vec<Curve>) 
 }
 
 /// The panel of log₁₀ |I(t) − I(0)|/|I(0)|; if |I(0)| is at most the drift, the divisor is instead the
-/// largest |I|, or 1 if that is larger.
+/// largest |I|, or 1 if 1 is larger.
 fn drift(record: &Recording, list: &[(String, Vec<f64>)]) -> Option<Panel> {
     let curve = |(name, values): &(String, Vec<f64>)| {
         let start = values.first().copied().unwrap_or(0.0);

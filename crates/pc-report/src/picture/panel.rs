@@ -48,7 +48,7 @@ pub enum Content {
     },
 }
 
-/// A curve; it is broken where a value is not finite.
+/// A curve, which is broken where a value is not finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     /// Its name.
@@ -71,7 +71,7 @@ impl Panel {
         }
     }
 
-    /// The names of its curves.
+    /// The names of the curves in the panel.
     pub(crate) fn names(&self) -> Vec<&str> {
         match &self.content {
             Content::Curves(curves) => curves.iter().map(|curve| curve.name.as_str()).collect(),
@@ -79,7 +79,7 @@ impl Panel {
         }
     }
 
-    /// Whether its two axes are alike, neither of them being time.
+    /// Whether the two axes of the panel are alike and neither of them is time.
     pub(crate) fn is_portrait(&self) -> bool {
         !self.up.0.is_empty()
     }

@@ -8,7 +8,8 @@ use crate::picture::svg::put;
 const SIDE: f64 = 260.0;
 const EDGE: f64 = 26.0;
 
-/// The eigenvalues of a steady motion, drawn with both axes, those of growing modes in another colour.
+/// The eigenvalues of a steady motion, drawn with a real and an imaginary axis; eigenvalues of growing modes
+/// have another colour.
 pub(crate) fn figure(spectrum: &[(f64, f64)], id: &str) -> String {
     let largest = spectrum.iter().fold(0.0f64, |size, (re, im)| size.max(re.abs()).max(im.abs()));
     let half = if largest > 0.0 && largest.is_finite() { 1.15 * largest } else { 1.0 };

@@ -3,7 +3,7 @@
 use crate::picture::axes::{is_still, range};
 use crate::picture::panel::{Curve, Panel, Scale};
 
-/// On an axis whose range is more than this many times that of a curve, the curve looks flat.
+/// A curve looks flat on an axis whose range is more than this many times the range of the curve.
 const RATIO: f64 = 12.0;
 /// The largest number of curves that share axes.
 const MOST_CURVES: usize = 6;
@@ -22,8 +22,8 @@ pub fn by_scale((across, scale): (&str, Scale), title: &str, curves: &[Curve]) -
     groups(&values).into_iter().map(panel).collect()
 }
 
-/// Groups of lists of values, given by their indices, the widest range first, such that each list visibly
-/// changes and no group has more curves than can be distinguished.
+/// Groups of lists of values, given by their indices, the widest range first, such that each list varies
+/// visibly and no group has more curves than can be distinguished.
 pub(super) fn groups(lists: &[Vec<f64>]) -> Vec<Vec<usize>> {
     let ranges: Vec<Option<(f64, f64)>> = lists.iter().map(|list| range(list.iter().copied())).collect();
     let size = |&(low, high): &(f64, f64)| low.abs().max(high.abs());

@@ -11,11 +11,12 @@ use crate::recording::{Recording, UnknownColumn};
 const WIDTH: f64 = 960.0;
 const TITLE: f64 = 46.0;
 const REMARK: f64 = 22.0;
-/// The heights of the parts of a panel over time: its heading, the area within the axes, the numbers below.
+/// The heights of the parts of a panel that is plotted over time: its heading, the area within the axes, the
+/// numbers below.
 const HEADING: f64 = 30.0;
 const WITHIN: f64 = 180.0;
 const BELOW: f64 = 36.0;
-/// The height of the area within the axes of a panel that is not over time.
+/// The height of the area within the axes of a panel that is not plotted over time.
 const SQUARE: f64 = 340.0;
 const EDGE: f64 = 14.0;
 /// The sizes of texts.

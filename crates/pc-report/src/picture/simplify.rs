@@ -102,7 +102,7 @@ fn turned(angle: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The largest distance of a point from the line through the kept points, which are in order.
+    /// The largest distance of a point from the polyline through the kept points, which are in order.
     fn worst(points: &[[f64; 2]], kept: &[[f64; 2]]) -> f64 {
         let to_piece = |p: [f64; 2], a: [f64; 2], b: [f64; 2]| {
             let (dx, dy) = (b[0] - a[0], b[1] - a[1]);

@@ -139,7 +139,7 @@ fn path(points: &[[f64; 2]], digits: usize) -> String {
     path
 }
 
-/// Adds an element to the text of a picture.
+/// Appends an element to the text of a picture.
 pub(super) fn put(svg: &mut String, element: std::fmt::Arguments<'_>) {
     let _ = svg.write_fmt(element); // writing to a string cannot fail
 }

@@ -16,11 +16,11 @@ const NOTHING: f64 = 1e-6;
 /// A point of space as it is seen on the drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Seen {
-    /// Its position, with y pointing down.
+    /// The position of the point, with y pointing down.
     pub(super) at: [f64; 2],
-    /// Its distance behind the centre of the scene.
+    /// The distance of the point behind the centre of the scene.
     pub(super) depth: f64,
-    /// The length that a unit has on the drawing at that depth.
+    /// The length that a unit of length at that depth has on the drawing.
     pub(super) scale: f64,
 }
 

@@ -79,7 +79,7 @@ pub(super) fn draw(
     }
 }
 
-/// Draws an area, with its edge, in a given opacity on white.
+/// Draws an area, with its edge, with a given opacity on white.
 fn outlined(drawing: &mut Drawing, mut corners: Vec<[f64; 2]>, ink: Ink, part: f64) {
     let pale = ink.colour().map(|c| (255.0 - part * (255.0 - f64::from(c))).round() as u8);
     drawing.filled(corners.clone(), Ink::Mixed(pale));

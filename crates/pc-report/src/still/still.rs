@@ -12,7 +12,8 @@ const EDGE: f64 = 12.0;
 
 impl Scene {
     /// Still number `number` on paper of this width and height, with the title and the time; the last still if there
-    /// are fewer. It looks as in the player of [`animation`](crate::animation) before the view is turned.
+    /// are fewer. The still looks as it does in the player of [`animation`](crate::animation) before the view is
+    /// turned.
     pub fn drawing(&self, title: &str, number: usize, [width, height]: [f64; 2]) -> Drawing {
         let mut drawing = Drawing { width, height, shapes: Vec::new() };
         let Some(last) = self.times.len().checked_sub(1) else { return drawing };

@@ -10,16 +10,16 @@ use crate::error::{Disagreement, Irregular, VerifyError};
 pub struct Agreement {
     /// The number of states at which the forms were compared.
     pub states: usize,
-    /// The number of these at which equations were compared only along random virtual velocities, because
-    /// the model is large.
+    /// The number of these states at which equations were compared only along random virtual velocities,
+    /// because the model is large.
     pub projected: usize,
     /// The number of states that were skipped because the equations are singular or not defined there.
     pub skipped: usize,
-    /// The reason why the last of these was skipped.
+    /// The reason why the last of the skipped states had to be skipped.
     pub reason: Option<String>,
     /// The largest difference, relative to the size of the terms; at most [`TOLERANCE`](crate::TOLERANCE).
     pub error: f64,
-    /// The quantity with this difference.
+    /// The quantity with the largest difference.
     pub quantity: String,
     /// The forms that were compared: `poincare`, `canonical`, `emit`.
     pub forms: Vec<String>,
@@ -52,7 +52,7 @@ impl fmt::Display for Agreement {
 }
 
 impl Agreement {
-    /// Takes note of a difference, relative to the size of its terms.
+    /// Records a difference, relative to the size of its terms.
     pub(crate) fn note(&mut self, error: f64, label: &str) {
         if error > self.error || self.quantity.is_empty() {
             (self.error, self.quantity) = (error, label.to_owned());
@@ -85,7 +85,7 @@ pub(crate) enum Passed {
     Irregular(Irregular),
     /// The derivations differ.
     Error(VerifyError),
-    /// The derivations differ, but no more than rounding errors of the first at this state explain.
+    /// The derivations differ, but by no more than the rounding errors of the first at this state explain.
     Noise(Box<Disagreement>),
 }
 

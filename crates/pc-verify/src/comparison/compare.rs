@@ -18,12 +18,12 @@ use crate::error::{Disagreement, Irregular, VerifyError};
 use crate::numbers::rounding::{Rounding, UNIT, within};
 use crate::numbers::sized::Sized;
 
-/// Velocities whose difference, relative to the largest, exceeds this are distinct; momenta whose difference
-/// does not are equal.
+/// Velocities whose difference, relative to the largest, exceeds this value are distinct; momenta whose
+/// difference does not exceed it are equal.
 const OTHER: f64 = 1e-9;
 
 /// The greatest factor by which rounding errors of the first derivation may exceed those of the second: forms
-/// that are not chosen for accuracy lose up to half of the digits. Values that scatter further are not
+/// that are not chosen for accuracy lose up to half of the digits. Values that scatter more widely are not
 /// compared.
 const WORSE: f64 = 1e4;
 
@@ -44,8 +44,8 @@ impl Default for Options {
 }
 
 /// Derives an assembled model a second time and compares, at random states that satisfy the constraints, ẋ, η̇ or ẏ, λ,
-/// the energy and its rate, integrals and outputs. This is done for the equations that are integrated, in
-/// quasi-velocities and in momenta, and for those that are emitted as source.
+/// the energy and its rate, integrals and outputs. The comparison covers the equations that are integrated, in
+/// quasi-velocities and in momenta, and those that are emitted as source.
 ///
 /// # Errors
 /// [`VerifyError::Disagreement`] with the quantity, its two values and the state; [`VerifyError::Model`] if the first
@@ -184,7 +184,7 @@ pub(crate) enum Compared<'g> {
     Along(Box<Projection>),
 }
 
-/// The number of states tried for each comparison that is wanted.
+/// The number of states tried for each comparison required.
 const TRIES: usize = 3;
 
 impl Agreement {
@@ -437,9 +437,9 @@ impl Second {
     }
 
     /// Raises sizes to the scatter of the values of the first derivation, in units of the rounding error, at
-    /// states that differ by rounding errors: its eliminations amplify these too where independent velocities
-    /// determine the others badly. The increase is bounded, since a value that is mere noise scatters by its
-    /// own size and would agree with any value. Returns the unbounded sizes.
+    /// states that differ by rounding errors: its eliminations also amplify rounding errors where the
+    /// independent velocities determine the others poorly. The increase is bounded, since a value that is
+    /// mere noise scatters by its own size and would agree with any value. Returns the unbounded sizes.
     fn scatter_first(
         &self,
         first: &mut First<'_>,

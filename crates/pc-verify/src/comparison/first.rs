@@ -19,16 +19,16 @@ pub(crate) struct First<'g> {
     pub(crate) form: String,
     /// The compared quantities with their names.
     pub(crate) wanted: Vec<(String, Quantity)>,
-    /// The indices of these quantities among the values of the first derivation.
+    /// The indices of the compared quantities among the values of the first derivation.
     places: Vec<usize>,
     /// The free quasi-velocities, if their momenta or energies are compared.
     pub(crate) free: Option<Vec<Free>>,
     source: Values<'g>,
-    /// The number of states at which the form was compared, and the reason why it was not compared at the
-    /// last state without a comparison.
+    /// The number of states at which the form was compared, and the reason why there was no comparison at the
+    /// last state that was left out.
     pub(crate) compared: usize,
     pub(crate) reason: Option<String>,
-    /// The disagreement at the last state at which its values were mere noise.
+    /// The disagreement at the last state at which the values of the form were mere noise.
     pub(crate) noise: Option<Box<Disagreement>>,
 }
 
@@ -204,8 +204,8 @@ impl<'g> First<'g> {
         }
     }
 
-    /// The equations with those candidates to be compared that the second derivation also has, except the
-    /// values that are given to the first.
+    /// The equations with the quantities to compare: those of the `candidates` that the second derivation
+    /// also has, except the `inputs`, which are given to the first.
     fn comparing(
         form: &str,
         candidates: Vec<(String, Option<Quantity>)>,

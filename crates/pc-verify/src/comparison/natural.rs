@@ -8,7 +8,7 @@ use crate::derivation::quantity::Quantity;
 /// the largest term.
 pub(crate) const SHARED: f64 = 1e-3;
 
-/// The direction in which the motion goes: time, ẋ, ẇ and ż.
+/// The direction of the motion: time, ẋ, ẇ and ż.
 pub(crate) fn motion(derived: &Derived) -> Direction {
     let w = derived.accelerations.clone();
     Direction { w, z: derived.state_rates.clone(), ..derived.place.in_time(&derived.velocities) }

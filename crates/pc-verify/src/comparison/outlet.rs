@@ -22,7 +22,8 @@ pub enum Outlet {
     Page(Form),
 }
 
-/// The number of random states, in addition to the start, at which such equations are compared.
+/// The number of random states, in addition to the start, at which equations are compared before they are
+/// returned.
 const NEAR: usize = 3;
 
 /// Compares equations, in the form in which they are returned, with the second derivation at the start and at

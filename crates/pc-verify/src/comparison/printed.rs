@@ -1,4 +1,5 @@
-//! The numerical values of the printed equations, exactly of the expressions that `pc derive` prints.
+//! The numerical values of the printed equations, computed from exactly the expressions that `pc derive`
+//! prints.
 
 use nalgebra::DMatrix;
 use pc_expr::ExprError;
@@ -51,10 +52,10 @@ pub(crate) struct Printed<'g> {
 
 /// Quasi-velocities on the page that are not those of the model.
 struct Change<'g> {
-    /// Their symbols, and the symbols of their rates.
+    /// The symbols of these quasi-velocities, and the symbols of their rates.
     symbols: Vec<Expr<'g>>,
     accelerations: Vec<Expr<'g>>,
-    /// Their definitions in terms of the independent quasi-velocities of the model.
+    /// The definitions of these quasi-velocities in terms of the independent quasi-velocities of the model.
     definitions: Vec<Expr<'g>>,
     /// The rates of the independent quasi-velocities of the model, in terms of the new quasi-velocities and
     /// their rates.
@@ -87,8 +88,8 @@ impl Second {
             .or_else(reaction)
     }
 
-    /// Whether these quasi-velocities are as many as all velocities, or as those that the constraints leave
-    /// free.
+    /// Whether there are as many of these quasi-velocities as there are velocities, or as there are
+    /// velocities that the constraints leave free.
     fn are_free(&self, free: &[Free]) -> bool {
         let k = self.start.w.len();
         free.len() == k || free.len() + self.derivation.kept.len() == k
@@ -246,8 +247,8 @@ impl<'g> Printed<'g> {
         self.form.variables().is_some_and(Variables::has_momenta)
     }
 
-    /// The values of the printed equations: M η̇ = r is solved, and the momenta and multipliers are those of
-    /// the second derivation, if the variables are momenta and if the equations contain multipliers.
+    /// The values of the printed equations: M η̇ = r is solved; momenta, if they are the variables, and
+    /// multipliers, if the equations contain them, are taken from the second derivation.
     pub(crate) fn values(
         &self,
         second: &Derivation,

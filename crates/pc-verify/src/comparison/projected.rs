@@ -1,12 +1,13 @@
 //! The equations of large models, compared along a few virtual velocities that are drawn at random.
 //!
-//! To evaluate all equations at a state takes all n² second derivatives of L with respect to the velocities.
-//! Along one virtual velocity v that the constraints allow, they reduce to one equation without multipliers,
+//! Evaluating all equations at a state requires all n² second derivatives of L with respect to the
+//! velocities. Along one virtual velocity v that the constraints allow, they reduce to one equation without
+//! multipliers,
 //!
 //!   v_s (D_t p_s − p·δw_s − X_s L − Q_s) = 0,
 //!
 //! which takes about five evaluations of L along the motion of the first derivation. An error in any equation
-//! shows up in it, except for special v; the rates of the constraints along the motion, to which v is
+//! shows up in this one, except for special v; the rates of the constraints along the motion, to which v is
 //! insensitive, are checked in addition.
 
 use nalgebra::DMatrix;

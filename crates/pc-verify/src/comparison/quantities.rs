@@ -126,7 +126,8 @@ impl Derivation {
         Ok(())
     }
 
-    /// For each η_s, the largest |∂η_s/∂w_r| times the terms of w_r, and the largest times those of ẇ_r.
+    /// For each η_s, the largest product of |∂η_s/∂w_r| and the terms of w_r, and the largest with the terms
+    /// of ẇ_r instead.
     fn column_sizes(&self, derived: &Derived) -> Result<Vec<(f64, f64)>, Irregular> {
         let rows = self.quasi_velocity_matrix(&derived.place, &Rounding::none())?;
         let led = |row: &[f64], sizes: &[f64]| {
@@ -137,7 +138,7 @@ impl Derivation {
         Ok(rows.iter().map(both).collect())
     }
 
-    /// For each ẋ_i, the largest |b_is| times the terms of ẇ_s.
+    /// For each ẋ_i, the largest product of |b_is| and the terms of ẇ_s.
     fn acceleration_sizes(&self, derived: &Derived) -> Result<Vec<f64>, Irregular> {
         let frame = self.frame(&derived.place, &Rounding::none())?;
         let led = |i: usize| {
@@ -293,8 +294,8 @@ impl Derivation {
     }
 }
 
-/// Raises sizes: quantities from one elimination are uncertain by some rounding errors of the largest of
-/// them, or of their natural size.
+/// Raises sizes: quantities that result from the same elimination are uncertain by some rounding errors of
+/// the largest of these quantities, or of their natural size.
 fn raise(quantities: &mut [Sized], wanted: &[Quantity], natural_size: impl Fn(&Quantity) -> f64) {
     for (quantity, wanted) in quantities.iter_mut().zip(wanted) {
         quantity.size = quantity.size.max(SHARED * natural_size(wanted));

@@ -9,7 +9,7 @@ use crate::derivation::place::Place;
 use crate::error::{Disagreement, Irregular, VerifyError};
 use crate::numbers::rounding::{Rounding, within};
 
-/// The tolerance of a reset, which takes some operations and whose state is projected so that quaternions
+/// The tolerance for a reset: it takes some operations, and then the state is projected so that quaternions
 /// have length 1.
 const APART: f64 = 1e-12;
 /// Velocities are projected onto constraints to within this fraction of their terms: rounding errors of
@@ -30,9 +30,10 @@ pub struct Jump<'a> {
 }
 
 impl Second {
-    /// Compares the state after an event with the definitions of its reset, evaluated at the state before: names that are reset have
-    /// their new values, and coordinates and first-order states that are not reset have their old ones. Under constraints, new
-    /// values may be adjusted to satisfy them; then the constraints are compared instead.
+    /// Compares the state after an event with the definitions of its reset, evaluated at the state before the event:
+    /// names that are reset have their new values, and coordinates and first-order states that are not reset have their
+    /// old ones. Under constraints, new values may be adjusted to satisfy them; then the constraints are compared
+    /// instead.
     ///
     /// # Errors
     /// As for [`verify`](crate::verify).

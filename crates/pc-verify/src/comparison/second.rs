@@ -20,7 +20,7 @@ use crate::text::text::{Text, Velocities};
 /// The number of terms that can be evaluated in some milliseconds.
 pub(crate) const LONG: usize = 100_000;
 
-/// The number of terms to evaluate for all states together, in about a second.
+/// The number of terms to evaluate for all states together, which takes about a second.
 const ALL_STATES: usize = 5_000_000;
 
 /// The number of terms up to which all equations are evaluated at a single state: this takes some seconds.
@@ -263,7 +263,7 @@ impl Second {
         self.cost() > LONG && (flow.has_momenta() || !is_own)
     }
 
-    /// The reason why a printed form is too expensive to derive just for a comparison; none if it is not.
+    /// The reason why a printed form is too expensive to derive just for a comparison, if it is.
     pub(crate) fn too_large_for(&self, form: Form, assembly: &Assembly<'_>) -> Option<&'static str> {
         if form == Form::Voronets && assembly.constraints.multipliers().is_none() {
             return None; // equal to Lagrange's, and not derived

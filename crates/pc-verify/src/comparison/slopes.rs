@@ -1,4 +1,4 @@
-//! The comparison of derivatives of the equations with differences of the rates of the second derivation.
+//! The comparison of derivatives of the equations with differences of the rates in the second derivation.
 
 use pc_mech::VectorField;
 use pc_model::{Assembly, Flow, Model};
@@ -15,7 +15,7 @@ use crate::numbers::sized::Sized;
 /// be returned.
 #[derive(Clone, Debug, Default)]
 pub struct Slope {
-    /// Its name in messages, such as `∂/∂p`.
+    /// The name of the direction in messages, such as `∂/∂p`.
     pub name: String,
     /// The change of each component of the state.
     pub state: Vec<f64>,
@@ -33,10 +33,11 @@ const STEPS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
 
 /// A derivative is compared only if the differences determine it to within this relative error.
 const KNOWN: f64 = 1e-3;
-/// Derivatives count as different if they differ by more than this fraction: an error of derivation is of the
-/// order of a term.
+/// Derivatives count as different if they differ by more than this fraction: an error of derivation is as
+/// large as a term.
 const APART: f64 = 1e-5;
-/// The rounding error of a difference of rates, relative to their terms: it accumulates over many terms.
+/// The rounding error of a difference of rates, relative to the terms of the rates: the error accumulates
+/// over many terms.
 const ROUNDINGS: f64 = 1e3 * f64::EPSILON;
 /// Unless there is a corner, the gap between the differences on either side shrinks by at least this factor when the step
 /// is halved; the factor is 2 for smooth rates.
@@ -45,10 +46,11 @@ const SMOOTH: f64 = 1.5;
 const DOUBT: f64 = 10.0;
 
 impl Second {
-    /// Compares derivatives along a direction with differences of the second derivation's rates at a state of a flow of the model.
+    /// Compares derivatives along a direction, at a state of a flow of the model, with differences of the rates in the
+    /// second derivation.
     ///
     /// Derivatives that differences do not determine, at corners and where rounding errors are large, are not
-    /// compared; neither are those of a large model.
+    /// compared; neither are derivatives of a large model.
     ///
     /// # Errors
     /// As for [`verify`](crate::verify).

@@ -1,4 +1,4 @@
-//! The unknowns that are solved for, and the effect of their errors on functions of them.
+//! The unknowns for which the equations are solved, and the effect of their errors on functions of them.
 
 use crate::comparison::natural::{SHARED, motion, natural_size};
 use crate::comparison::tolerance::TOLERANCE;
@@ -83,8 +83,8 @@ impl Derivation {
         Ok(sizes)
     }
 
-    /// Raises the sizes of integrals and outputs to account for the reactions in them, if these are less
-    /// certain.
+    /// Raises the sizes of integrals and outputs to account for the reactions in them, if the reactions are
+    /// less certain.
     pub(crate) fn lead_reactions(
         &self,
         quantities: &mut [Sized],
@@ -132,8 +132,8 @@ impl Derivation {
     }
 
     /// The sizes that the reactions would have without cancellation, in a unit that two eliminations share.
-    /// They follow from the given velocities and momenta and, if the quasi-velocities of the text together
-    /// with the constraints determine all velocities, also from
+    /// These sizes follow from the given velocities and momenta and, if the quasi-velocities of the text
+    /// together with the constraints determine all velocities, also from
     ///
     ///   λ_α = (ṗ − F)·W_α,
     ///
@@ -313,7 +313,7 @@ t_end = -0.5
         assert_eq!(agreement.states, 100);
     }
 
-    /// An error of one part in 1e8 of a mass is an error of one part in 1e10 of the reaction to which the
+    /// An error of one part in 1e8 in a mass is an error of one part in 1e10 in the reaction to which the
     /// mass contributes.
     #[test]
     fn a_reaction_of_another_mass_is_found() {

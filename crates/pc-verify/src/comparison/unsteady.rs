@@ -10,12 +10,12 @@ use crate::error::Irregular;
 use crate::numbers::rounding::{Random, Rounding, within};
 use crate::numbers::sized::Sized;
 
-/// The distance of other states from this one: large enough that small terms absorbed by a large number are
-/// rounded differently, which single rounding errors do not achieve, and so small that a difference due to a
-/// wrong term stays the same to as many digits.
+/// The distance of other states from the state in question: large enough that small terms absorbed by a large
+/// number are rounded differently, which single rounding errors do not achieve, and so small that a
+/// difference due to a wrong term stays the same to as many digits.
 const ASIDE: f64 = 1e-9;
 
-/// The number of such states.
+/// The number of other states that are tried.
 const STATES: u64 = 4;
 
 /// A difference of at most this many jumps is attributed to rounding errors.
@@ -26,13 +26,14 @@ pub(crate) struct Aside {
     /// The sizes of terms whose rounding errors would explain the jumps of the differences.
     pub(crate) noise: Vec<f64>,
     /// The largest relative differences at the nearby states; none if the derivations disagree at one of
-    /// these or too few could be compared.
+    /// these states, or if too few states could be compared.
     pub(crate) errors: Option<Vec<f64>>,
 }
 
 impl Derivation {
     /// Compares two derivations near a state at which they differ. If rates jump, the last bit of the state decides on
-    /// which side of the jump it is, and the derivations may be on different sides; at nearby states they agree.
+    /// which side of the jump the state lies, and the derivations may be on different sides; at nearby states the
+    /// derivations agree.
     pub(crate) fn aside(
         &self,
         first: &mut First<'_>,
@@ -108,7 +109,7 @@ mod tests {
 
     /// As x tends to 0, the constraint determines w less and less accurately: the printed expression for the
     /// other velocity has terms in 1/x⁴ that cancel and absorb the remainder. Some states give no information
-    /// about it, others do.
+    /// about w, while others do.
     #[test]
     fn absorbed_terms_are_ignored() {
         let agreement = verified(

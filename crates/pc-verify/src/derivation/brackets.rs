@@ -1,4 +1,4 @@
-//! The structure coefficients of frames that do not determine them at each point.
+//! The structure coefficients of a frame that does not determine them at each point.
 
 use nalgebra::DMatrix;
 
@@ -12,7 +12,7 @@ use crate::numbers::rounding::{Random, Rounding, within};
 use crate::text::term::Term;
 
 impl Structure {
-    /// The c_rs^m; none if they follow from the frame.
+    /// The coefficients c_rs^m; none if they follow from the frame.
     pub(crate) fn constants(
         &self,
         derivation: &Derivation,

@@ -29,7 +29,7 @@ pub(crate) struct Derived {
     pub(crate) velocities: Vec<f64>,
     /// ż
     pub(crate) state_rates: Vec<f64>,
-    /// ẇ, each with the size of its terms.
+    /// The components of ẇ, each with the size of its terms.
     pub(crate) accelerations: Vec<f64>,
     pub(crate) acceleration_sizes: Vec<f64>,
     /// The sizes of the terms of the forces, including reactions, and of the accelerations that each would
@@ -43,7 +43,7 @@ pub(crate) struct Derived {
     pub(crate) momenta: Vec<f64>,
     pub(crate) momentum_rates: Vec<f64>,
     pub(crate) momentum_rate_sizes: Vec<f64>,
-    /// The sizes of the terms of p, ∂²L/∂w∂w w, and of the terms of w when p is solved for it.
+    /// The sizes of the terms of p, ∂²L/∂w∂w w, and of the terms of w when p is solved for w.
     pub(crate) momentum_sizes: Vec<f64>,
     pub(crate) velocity_sizes: Vec<f64>,
     /// The Lagrangian L and its rate.
@@ -201,7 +201,7 @@ impl Derivation {
         Ok(all)
     }
 
-    /// Checks that the motion also satisfies the constraints that were left out as dependent.
+    /// Checks that the motion also satisfies the constraints that were left out because they are dependent.
     fn require_followed(
         &self,
         at: &Place,

@@ -14,10 +14,10 @@ use crate::error::Irregular;
 use crate::numbers::rounding::{Random, Rounding, within};
 
 /// The number of places at which the quotient is tested, for the present values of the parameters and for
-/// others.
+/// other values.
 const PLACES: usize = 6;
 
-/// The greatest relative change of parameters, and distance of places.
+/// The greatest relative change in the parameters, and the greatest distance between places.
 const MOVED: f64 = 0.3;
 
 /// The remainder that rounding errors may leave, relative to the larger of the two sides.
@@ -112,7 +112,8 @@ impl Derivation {
     }
 }
 
-/// The two sides that are compared for the force on a body at a place, and what they depend on.
+/// The two sides that are compared for the force on a body at a place, and the quantities on which the two
+/// sides depend.
 struct Sides {
     /// F·X_s r and X_s (F·r) for all s.
     of_fields: Vec<[f64; 2]>,

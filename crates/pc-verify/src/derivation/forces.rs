@@ -8,8 +8,9 @@ use crate::numbers::rounding::Rounding;
 use crate::text::text::{Forced, Velocities};
 
 impl Derivation {
-    /// The components of Q along virtual velocities, Q_s for a unit w_s. They come from forces on coordinates
-    /// and quasi-velocities, from dissipation −∂R/∂w_s, and from forces and torques on bodies (8).
+    /// The components of Q along virtual velocities, Q_s for a unit w_s. These components come from forces on
+    /// coordinates and quasi-velocities, from dissipation −∂R/∂w_s, and from forces and torques on bodies
+    /// (8).
     pub(crate) fn forces(
         &self,
         at: &Place,

@@ -10,7 +10,7 @@ use crate::numbers::rounding::Rounding;
 #[derive(Clone, Debug)]
 pub(crate) struct Here {
     pub(crate) derived: Derived,
-    /// The values of the columns at that place.
+    /// The values of the columns at the place.
     pub(crate) columns: Vec<f64>,
 }
 

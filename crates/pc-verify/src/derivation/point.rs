@@ -10,8 +10,8 @@ use crate::text::resultant::Resultants;
 use crate::text::term::{Function, Term};
 use crate::text::text::{Text, Velocities};
 
-/// The largest number of definitions that are evaluated by nested calls; if there are more, earlier ones are
-/// evaluated in order first.
+/// The largest number of definitions that are evaluated by nested calls; if there are more, the earlier
+/// definitions are evaluated first, in order.
 const DEEP: usize = 64;
 
 /// A point: time, coordinates, velocities w and first-order states as numbers, with everything that follows
@@ -23,7 +23,7 @@ pub(crate) struct Point<'a, T: Number> {
     x: Vec<T>,
     w: Vec<T>,
     z: Vec<T>,
-    /// Whether w is known here; without accelerations it is unknown as a function of time.
+    /// Whether w is known here; without accelerations, w is unknown as a function of time.
     knows_velocities: bool,
     /// ẇ, if known.
     accelerations: Option<Vec<T>>,
@@ -40,14 +40,15 @@ pub(crate) struct Point<'a, T: Number> {
     open: Vec<Cell<bool>>,
     velocities: OnceCell<Vec<T>>,
     moving: OnceCell<Box<dyn Moving<T> + 'a>>,
-    /// The same point with first-order states at rest. It serves for their own rates, which contain no total
-    /// derivative of a state.
+    /// The same point with first-order states at rest. The rates of the first-order states are evaluated at
+    /// such a point: they contain no total derivative of a state.
     moving_without_states: OnceCell<Box<dyn Moving<T> + 'a>>,
     /// Whether the rates of the first-order states are being evaluated.
     in_state_rates: Cell<bool>,
 }
 
-/// A point as it moves in time; it is boxed, since the types of nested points would be infinite.
+/// A point as it moves in time; the point is boxed, since otherwise the types of nested points would be
+/// infinite.
 trait Moving<T> {
     /// The rate of a term.
     fn rate(&self, term: &Term) -> Result<T, Irregular>;
@@ -109,7 +110,7 @@ impl<'a, T: Number> Point<'a, T> {
         value.rounded(self.rounding)
     }
 
-    /// Checks that there is time left; every longer evaluation calls this.
+    /// Checks that there is time left; every lengthy evaluation calls this.
     fn within_limits(&self) -> Result<(), Irregular> {
         self.text.deadline.passed().map_or(Ok(()), |what| Err(Irregular::Spent { what }))
     }
@@ -394,7 +395,7 @@ impl<'a, T: Number> Point<'a, T> {
         Ok(self.round(function))
     }
 
-    /// ω as it is given, or as the vector of RᵀṘ.
+    /// ω as it is given, or the vector of the skew matrix RᵀṘ.
     pub(crate) fn angular_velocity(&self, body: &Body) -> Result<Vec<T>, Irregular> {
         match &body.turning {
             Some(Turning::AngularVelocity(omega)) => self.all(omega),

@@ -15,7 +15,7 @@ pub(crate) enum Quantity {
     Column(usize),
     /// The η̇_s of a column.
     ColumnRate(usize),
-    /// The left-hand side of a constraint, or its rate: 0.
+    /// The left-hand side of a constraint, or its rate; both are 0.
     Zero,
     /// λ_α of the constraint with this number.
     Reaction(usize),
@@ -23,7 +23,7 @@ pub(crate) enum Quantity {
     Resultant(Resultant),
     /// The energy y·η − L of all velocities.
     Energy,
-    /// y_f of a free quasi-velocity, given its index among these.
+    /// The momentum y_f of a free quasi-velocity, given its index among the free ones.
     Momentum(usize),
     MomentumRate(usize),
     /// The energy y_f η_f − L of the free quasi-velocities, and its rate.
@@ -36,7 +36,7 @@ pub(crate) enum Quantity {
 /// A quasi-velocity that is free, or whose momentum is a component of the state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Free {
-    /// The quasi-velocity in this column.
+    /// The quasi-velocity in the column with this index.
     Column(usize),
     /// The left-hand side of a constraint.
     Constraint(usize),

@@ -2,8 +2,8 @@
 //!
 //! Forces F at the points of the bodies, torques N on them and impulses on other terms of the kinetic energy
 //! do the same work as the reactions, for all virtual velocities: Jᵀ F = λ_α ∂φ_α/∂w, where J has the rows
-//! ∂ṙ/∂w, ∂ω/∂w and ∂p/∂w. The smallest F results from the pseudo-inverse; those parts of it are compared
-//! that the first derivation considers determined.
+//! ∂ṙ/∂w, ∂ω/∂w and ∂p/∂w. The smallest F results from the pseudo-inverse; only the parts of F that the first
+//! derivation considers determined are compared.
 
 use nalgebra::DMatrix;
 

@@ -167,7 +167,7 @@ fn shortest(rows: &[Vec<f64>], rest: &[f64], columns: usize) -> Result<Vec<f64>,
     }
 }
 
-/// The smallest fraction of a displacement that is made in one step.
+/// The smallest fraction of a displacement that is covered in one step.
 const SHORTEST: f64 = 1.0 / 64.0;
 
 /// The numbers of parts into which a step is divided, for extrapolation to infinitely many.

@@ -73,8 +73,8 @@ impl Derivation {
         Err(Irregular::OffConstraints)
     }
 
-    /// ẋ when all quasi-velocities vanish, including those added to the defined ones, and its rate along the
-    /// motion: b_0 if quasi-velocities are defined in terms of ẋ; otherwise zero.
+    /// ẋ when all quasi-velocities vanish, including those added to the defined ones, and the rate of this ẋ
+    /// along the motion: b_0 if quasi-velocities are defined in terms of ẋ; otherwise zero.
     pub(crate) fn drift(
         &self,
         at: &Place,

@@ -19,7 +19,7 @@ const CERTAIN: f64 = 0.1;
 /// of that entry.
 const NOISE: f64 = 1e-13;
 
-/// Pivots below this fraction of the largest make equations singular.
+/// Pivots below this fraction of the largest show that equations are singular.
 const PIVOT: f64 = 1e-13;
 
 /// The matrix with these rows, which have `columns` entries each.
@@ -72,8 +72,8 @@ fn blocks(a: &DMatrix<f64>) -> Vec<Block> {
     blocks
 }
 
-/// A⁻ with A A⁻ A = A and A⁻ A A⁻ = A⁻, and the rank. A⁻ r solves A z = r if this has solutions, whatever the
-/// sizes of the equations and the units of the unknowns.
+/// A⁻ with A A⁻ A = A and A⁻ A A⁻ = A⁻, and the rank. A⁻ r solves A z = r if this system has solutions,
+/// whatever the sizes of the equations and the units of the unknowns.
 pub(crate) fn solving_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, usize)> {
     let rows = row_weights(a, &vec![1.0; a.ncols()]);
     let columns = column_weights(a, &rows);
@@ -156,8 +156,8 @@ fn pseudo_inverse(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, usize)> {
     Some((inverse, rank))
 }
 
-/// The pseudo-inverse by orthogonal elimination; none if the rank is in doubt: singular values are at least
-/// 1/‖A⁺‖, and at most the norm of the full matrix, `largest`.
+/// The pseudo-inverse computed by orthogonal elimination; none if the rank is in doubt: singular values are
+/// at least 1/‖A⁺‖, and at most the norm of the full matrix, `largest`.
 fn of_full_rank(a: &DMatrix<f64>, largest: f64) -> Option<(DMatrix<f64>, usize)> {
     let rank = a.nrows().min(a.ncols());
     if rank == 0 {
@@ -173,7 +173,7 @@ fn of_full_rank(a: &DMatrix<f64>, largest: f64) -> Option<(DMatrix<f64>, usize)>
     Some((if is_tall { inverse } else { inverse.transpose() }, rank))
 }
 
-/// The pseudo-inverse by singular values, which also show the rank.
+/// The pseudo-inverse computed from singular values, which also show the rank.
 fn by_singular_values(blocks: &[(Block, DMatrix<f64>)]) -> Option<Vec<(DMatrix<f64>, usize)>> {
     let parts: Vec<_> =
         blocks.iter().map(|(_, part)| (!part.is_empty()).then(|| part.clone().svd(true, true))).collect();

@@ -10,7 +10,7 @@ pub(crate) fn within(value: f64, bound: f64) -> bool {
 /// Half a unit in the last place of 1.
 pub(crate) const UNIT: f64 = f64::EPSILON / 2.0;
 
-/// Moves numbers by one part in 2⁵³, up or down at random; alternatively leaves them unchanged.
+/// Moves numbers by one part in 2⁵³, up or down at random, or leaves them unchanged.
 ///
 /// The results of a computation repeated in this way scatter as far as its rounding errors reach: widely
 /// after cancellation, and after division by small numbers.

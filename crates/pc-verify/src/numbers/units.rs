@@ -4,11 +4,11 @@
 use crate::derivation::place::Place;
 use crate::numbers::rounding::Random;
 
-/// A start value below this serves as the unit of its quantity; for a larger one the unit is 1.
+/// A start value below this serves as the unit of its quantity; for a larger start value the unit is 1.
 const SMALL: f64 = 1e-3;
 
 /// A unit for each coordinate, velocity and first-order state: 1, unless the start has small values, such as lengths
-/// of 1e-9 m; functions of these overflow or vanish at a distance of 1.
+/// of 1e-9 m; functions of such values overflow or vanish at a distance of 1.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Units {
     pub(crate) x: Vec<f64>,
@@ -25,13 +25,13 @@ impl Units {
         Units { x, w, z: units(&start.z) }
     }
 
-    /// Random coordinates at about this distance from those of a place, in their units.
+    /// Random coordinates at about this distance, in their units, from the coordinates of a place.
     pub(crate) fn displaced(&self, from: &Place, scale: f64, random: &mut Random) -> Vec<f64> {
         let moved = |(x, unit): (&f64, &f64)| x + scale * (unit + x.abs()) * random.signed();
         from.x.iter().zip(&self.x).map(moved).collect()
     }
 
-    /// Random velocities at about this distance from those of a place, in their units.
+    /// Random velocities at about this distance, in their units, from the velocities of a place.
     pub(crate) fn faster(&self, from: &Place, scale: f64, random: &mut Random) -> Vec<f64> {
         let fastest = from.w.iter().fold(0.0f64, |fastest, w| fastest.max(w.abs()));
         let moved = |(w, unit): (&f64, &f64)| w + scale * (unit + fastest) * random.signed();
@@ -39,8 +39,8 @@ impl Units {
     }
 }
 
-/// The units for some values: 1, or a small value itself; a value of 0 gives no information and takes the
-/// largest unit of the others.
+/// The units for some values: 1, or a small value itself; a value of 0 carries no information and is assigned
+/// the largest unit of the others.
 fn units(values: &[f64]) -> Vec<f64> {
     let known = |value: f64| (value != 0.0).then_some(if value < SMALL { value } else { 1.0 });
     let largest = values.iter().filter_map(|value| known(value.abs())).reduce(f64::max).unwrap_or(1.0);

@@ -17,7 +17,8 @@ pub(crate) struct Body {
     /// μ_i for each component of the force; if it is not 0, the component has the force function μ_i F_i r_i,
     /// which is a term of L.
     pub(crate) force_functions: Vec<f64>,
-    /// Whether components of the force may have force functions; on a body with a joint they have none.
+    /// Whether components of the force may have force functions; on a body with a joint, the components have
+    /// none.
     pub(crate) may_have_force_functions: bool,
     pub(crate) torque: Vec<Term>,
 }

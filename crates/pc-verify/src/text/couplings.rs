@@ -79,7 +79,7 @@ impl Contents {
     }
 }
 
-/// A reader of terms, with the contents of the names of a text as far as they are known.
+/// A reader of terms, which knows what some or all of the names of a text contain.
 struct Reader<'a> {
     text: &'a Text,
     n: usize,
@@ -135,7 +135,8 @@ impl<'a> Reader<'a> {
         all.states = true;
     }
 
-    /// Adds a velocity to `all`: it is one of w, or, if it is given `by_terms`, stands for their contents.
+    /// Adds a velocity to `all`: the velocity is one of w or, if it is given `by_terms`, stands for the
+    /// contents of those terms.
     fn add_velocity(&self, i: usize, by_terms: bool, all: &mut Contents) {
         match by_terms {
             true => self.add_known(self.moving[i].as_ref(), all),
@@ -169,7 +170,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The contents of the rate of a term with these contents.
+    /// What the rate of a term may contain, given what the term contains.
     fn rate(&self, inner: &Contents) -> Contents {
         let mut all = inner.clone();
         if inner.states || inner.velocities.len() > 0 {

@@ -104,8 +104,8 @@ impl Term {
         }
     }
 
-    /// Whether it contains velocities; `definitions` says this for the definitions before it, and `None` is
-    /// returned if it uses a later one.
+    /// Whether it contains velocities; `definitions` says the same of the definitions before it, and `None`
+    /// is returned if it uses a later definition.
     pub(crate) fn has_velocities(&self, definitions: &[bool]) -> Option<bool> {
         let any = |terms: &mut dyn Iterator<Item = &Term>| -> Option<bool> {
             let has: Option<Vec<bool>> = terms.map(|term| term.has_velocities(definitions)).collect();

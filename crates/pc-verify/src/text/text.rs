@@ -16,11 +16,11 @@ use crate::text::tree::Tree;
 #[derive(Clone, Debug)]
 pub(crate) struct Text {
     pub(crate) names: Names,
-    /// The values of the parameters and inputs; of a table, its value at the start.
+    /// The values of the parameters and inputs; for a table, its value at the start.
     pub(crate) parameters: Vec<f64>,
     /// The tables among the inputs, with their indices.
     pub(crate) tables: Vec<(usize, Arc<Table>)>,
-    /// The numbers that are added to the values of tables, with the indices of these.
+    /// The numbers that are added to the values of tables, with the indices of the tables.
     pub(crate) shifts: Vec<(usize, f64)>,
     /// The rates ż of the first-order states.
     pub(crate) state_rates: Vec<Term>,
@@ -65,7 +65,8 @@ pub(crate) enum Forced {
 #[derive(Clone, Debug)]
 pub(crate) enum Brackets {
     Catalogue(String),
-    /// r, s, and the right-hand side, which is linear in the quasi-velocities; these represent their fields.
+    /// r, s, and the right-hand side, which is linear in the quasi-velocities; each quasi-velocity represents
+    /// its field.
     Table(Vec<(usize, usize, Term)>),
 }
 
@@ -176,7 +177,7 @@ impl Text {
         all.map(Term::size).sum::<usize>() + self.bodies.iter().map(of_body).sum::<usize>()
     }
 
-    /// Whether the model has energy in addition to that of bodies.
+    /// Whether the model has energy in addition to the energy of bodies.
     pub(crate) fn has_own_energy(&self) -> bool {
         self.lagrangian.is_some() || self.kinetic.is_some()
     }

@@ -1,8 +1,8 @@
 //! Bodies on joints, as terms: their positions, their rotations, and the rates of the joints' coordinates.
 //!
 //! A body has thirty definitions: the constant rotation of its joint, the rotation by the joint, its own
-//! rotation, and its position; a point has three. They follow the constant definitions of the text, which
-//! joints may contain, and precede the others, which may contain points.
+//! rotation, and its position; a point has three. These definitions follow the constant definitions of the
+//! text, which joints may contain, and precede the others, which may contain points.
 
 use std::collections::HashSet;
 
@@ -132,7 +132,7 @@ impl<'a> Tree<'a> {
         Ok(all)
     }
 
-    /// The rates of the coordinates of joints, with the names of these.
+    /// The rates of the coordinates of joints, with the names of the coordinates.
     pub(crate) fn rates(&self, names: &Names) -> Result<Vec<(String, Term)>, Unable> {
         let mut all = Vec::new();
         for body in &self.document.tree {
@@ -346,7 +346,7 @@ fn about(axis: &[Term], angle: &Term) -> Vec<Term> {
     unit().into_iter().zip(s).zip(square).map(entry).collect()
 }
 
-/// The sine and cosine of an angle. They are exact for a number that is a multiple of π/2 up to rounding:
+/// The sine and cosine of an angle. Both are exact for a number that is a multiple of π/2 up to rounding:
 /// otherwise the cosine of the double nearest to π/2 could be the only term left when others vanish, and
 /// would be mistaken for their size.
 fn sine_and_cosine(angle: &Term) -> [Term; 2] {
