@@ -302,15 +302,15 @@ typedef enum {
 } pc_direction;
 
 /**
- * A handle that ends the derivations of systems whose pc_system_options contain it, and
- * integrations of these systems. Any number of threads may use it at the same time. Free it
- * with pc_cancel_free.
+ * A handle that ends the derivations of systems whose pc_system_options contain it, and the
+ * integrations of these systems. Any number of threads may use it at the same time. Free it with
+ * pc_cancel_free.
  */
 typedef struct pc_cancel pc_cancel;
 
 /**
- * A motion as a function of time. It never changes, so that any number of threads may use it.
- * Free it with pc_dense_free.
+ * A motion as a function of time. It never changes, so any number of threads may use it. Free it
+ * with pc_dense_free.
  */
 typedef struct pc_dense pc_dense;
 
@@ -324,7 +324,7 @@ typedef struct pc_error pc_error;
  * f(t, y) for an integrator of your own: the context of pc_kernel_rhs and pc_kernel_jacobian.
  * Free it with pc_kernel_free.
  *
- * It holds workspace, so each thread needs its own, and two calls at the same time are not
+ * It holds workspace, so each thread needs its own kernel, and two calls at the same time are not
  * safe; in return it takes no locks.
  */
 typedef struct pc_kernel pc_kernel;
@@ -460,11 +460,12 @@ typedef struct {
 } pc_solver_options;
 
 /**
- * Writes the external forces at (t, y) to q: one for each that was declared, in that order, so
- * `q_length` is pc_system_force_count. y is the state of the system; in the canonical form it
- * contains momenta. Returns 0; a positive number where the forces are not defined, so that a
- * smaller step may help; a negative number to give up. A force left unwritten is NaN, and treated
- * like a positive return value. It must return: no exceptions, no longjmp.
+ * Writes the external forces at (t, y) to q: one for each that was declared, in the order of the
+ * declarations, so `q_length` is pc_system_force_count. y is the state of the system; in the
+ * canonical form it contains momenta. Returns 0 on success; a positive number where the forces are
+ * not defined, so that a smaller step may help; a negative number to give up. A force left
+ * unwritten is NaN and is treated like a positive return value. It must return normally: no
+ * exceptions, no longjmp.
  */
 typedef int (*pc_force_function)(double t,
                                  const double *y,
@@ -475,7 +476,7 @@ typedef int (*pc_force_function)(double t,
 
 /**
  * Writes the derivatives of the external forces at (t, y), all of them, column-major: ∂q_i/∂y_j
- * to `dq[i + j*e]` for e forces, so `dq_length` is e * `y_length`. Otherwise as
+ * to `dq[i + j*e]` for e forces, so `dq_length` is e * `y_length`. Otherwise it is like
  * pc_force_function.
  */
 typedef int (*pc_force_jacobian)(double t,
@@ -606,15 +607,15 @@ typedef struct {
  */
 typedef struct {
   /**
-   * Its number, from 0.
+   * The number of the member, from 0.
    */
   size_t number;
   /**
-   * PC_OK; PC_EVENT if a terminal event ended it; else why it failed.
+   * PC_OK, PC_EVENT if a terminal event ended the motion, or the status of the failure.
    */
   pc_status status;
   /**
-   * Why it failed, else NULL.
+   * Why the member failed; NULL if it did not.
    */
   const char *message;
   /**
@@ -623,7 +624,7 @@ typedef struct {
    */
   const double *times;
   /**
-   * The states at these times, one after the other, each of `dim` numbers. Like `times`,
+   * The states at these times, one after the other, each of `dim` numbers. Like `times`, it is
    * NULL where there are none.
    */
   const double *states;
@@ -640,7 +641,7 @@ typedef struct {
 /**
  * Receives each member in order, on the thread of the call; the data to which `member` points are
  * valid during the call. Returns 0 to continue; anything else ends the ensemble with PC_STOPPED.
- * Otherwise as pc_observer.
+ * Otherwise it is like pc_observer.
  */
 typedef int (*pc_member_observer)(const pc_member *member, void *user);
 
@@ -799,11 +800,11 @@ pc_status pc_model_differentiate(pc_model *model, int yes, pc_error **error);
 pc_status pc_model_text(const pc_model *model, char **text, pc_error **error);
 
 /**
- * Makes an empty model, to be built by the calls below. Different kinds of entries may be added in
- * any order; coordinates, quasi-velocities, parameters and so on are in the order of their calls.
- * Expressions are those of the text model, where `x'` is the velocity of the coordinate x and `t`
- * the time. The model is read as a whole by pc_model_check and pc_system_new, whose errors name
- * the entry and show its expression.
+ * Makes an empty model, to be built by the calls below. Entries of different kinds may be added in
+ * any order; coordinates, quasi-velocities, parameters and so on each keep the order of their
+ * calls. Expressions are written as in the text of a model: `x'` is the velocity of the coordinate
+ * x, and `t` is the time. The model is read as a whole by pc_model_check and pc_system_new, whose
+ * errors name the entry and show its expression.
  */
 pc_status pc_model_new(const char *name, pc_model **model, pc_error **error);
 
@@ -815,7 +816,7 @@ pc_status pc_model_new(const char *name, pc_model **model, pc_error **error);
 pc_status pc_model_check(const pc_model *model, pc_error **error);
 
 /**
- * Adds a parameter with its value, which pc_model_set and pc_system_set_parameter change.
+ * Adds a parameter with its value, which pc_model_set and pc_system_set_parameter can change.
  */
 pc_status pc_model_add_parameter(pc_model *model,
                                  const char *name,
@@ -843,8 +844,9 @@ pc_status pc_model_add_state(pc_model *model,
                              pc_error **error);
 
 /**
- * Sets the acceleration of gravity, along the axes of the positions of bodies, as expressions in
- * the parameters and t: it acts on the mass centres of all bodies and is included in the energy.
+ * Sets the components of the acceleration of gravity, along the axes in which the positions of
+ * bodies are given, as expressions in the parameters and t. Gravity acts on the mass centres of
+ * all bodies and is included in the energy.
  */
 pc_status pc_model_set_gravity(pc_model *model,
                                const char *x,
@@ -907,8 +909,8 @@ pc_status pc_model_set_bracket(pc_model *model,
                                pc_error **error);
 
 /**
- * Adds a constraint, which says that the expression, in coordinates or in velocities, vanishes. If
- * it is not affine in the velocities, declare this with pc_model_set_constraint_kind.
+ * Adds a constraint: the expression, in coordinates or in velocities, must vanish. If it is not
+ * affine in the velocities, declare this with pc_model_set_constraint_kind.
  */
 pc_status pc_model_add_constraint(pc_model *model,
                                   const char *name,
@@ -984,9 +986,9 @@ pc_status pc_model_add_input_table(pc_model *model,
 
 /**
  * Adds an input whose table is a column of a file of comma-separated numbers, the first line of
- * which holds the names of the columns; otherwise as pc_model_add_input_table. `time` is the name
- * of the column of times, NULL for "t" or, without one, the first column. The path is relative to
- * the working directory at the time of the call.
+ * which holds the names of the columns; otherwise this is like pc_model_add_input_table. `time` is
+ * the name of the column of times, NULL for "t" or, if there is no such column, for the first one.
+ * The path is relative to the working directory at the time of the call.
  */
 pc_status pc_model_add_input_file(pc_model *model,
                                   const char *name,
@@ -997,9 +999,9 @@ pc_status pc_model_add_input_file(pc_model *model,
                                   pc_error **error);
 
 /**
- * Adds a particle, or a rigid body if it is given an inertia: its mass, and the position of
- * its mass centre or of a point of the body that is at rest, as expressions in the
- * coordinates. Energy and forces follow from the bodies, so the model needs no Lagrangian.
+ * Adds a particle, or a rigid body if it is given an inertia. The mass, and the position of the
+ * mass centre or of a point of the body that is at rest, are expressions in the coordinates.
+ * Energy and forces follow from the bodies, so the model needs no Lagrangian.
  */
 pc_status pc_model_add_body(pc_model *model,
                             const char *name,
@@ -1020,7 +1022,7 @@ pc_status pc_model_set_body_force(pc_model *model,
                                   pc_error **error);
 
 /**
- * Sets the torque on a rigid body, in the axes of its angular velocity.
+ * Sets the torque on a rigid body, in the axes in which its angular velocity is given.
  */
 pc_status pc_model_set_body_torque(pc_model *model,
                                    const char *body,
@@ -1030,7 +1032,7 @@ pc_status pc_model_set_body_torque(pc_model *model,
                                    pc_error **error);
 
 /**
- * Sets the angular velocity of a rigid body, in axes of the body. Excludes
+ * Sets the angular velocity of a rigid body, in axes of the body. It cannot be combined with
  * pc_model_set_body_rotation.
  */
 pc_status pc_model_set_body_angular_velocity(pc_model *model,
@@ -1062,10 +1064,10 @@ pc_status pc_model_set_body_rotation(pc_model *model,
 
 /**
  * Adds a body that is attached to another, or to the world if `parent` is null, by a joint of this
- * kind: fixed, revolute, prismatic, screw, cylindrical, universal, planar, spherical, free. Its
- * origin is the point of the joint. Inertia, force and torque are set as for other bodies, start
- * values by pc_model_add_coordinate and pc_model_add_quasi_velocity with the names that the joint
- * gives, such as `NAME` and `NAME'` for a revolute one.
+ * kind: fixed, revolute, prismatic, screw, cylindrical, universal, planar, spherical, free. The
+ * origin of the body is the point of the joint. Inertia, force and torque are set as for other
+ * bodies, start values by pc_model_add_coordinate and pc_model_add_quasi_velocity with the names
+ * that the joint gives, such as `NAME` and `NAME'` for a revolute one.
  */
 pc_status pc_model_add_jointed_body(pc_model *model,
                                     const char *name,
@@ -1130,7 +1132,7 @@ pc_status pc_model_set_joint_pitch(pc_model *model,
 
 /**
  * Sets the rotation from the axes of a joint to those of the parent: the 9 entries of its
- * matrix, row by row. Excludes pc_model_set_joint_turns.
+ * matrix, row by row. It cannot be combined with pc_model_set_joint_turns.
  */
 pc_status pc_model_set_joint_rotation(pc_model *model,
                                       const char *body,
@@ -1140,7 +1142,7 @@ pc_status pc_model_set_joint_rotation(pc_model *model,
 
 /**
  * Sets the same rotation as a sequence of turns about axes: `axes` has a letter x, y or z for each
- * of the `length` angles; each turn is about an axis that the turns before it have moved.
+ * of the `length` angles; each turn is about an axis as moved by the turns before it.
  */
 pc_status pc_model_set_joint_turns(pc_model *model,
                                    const char *body,
@@ -1212,13 +1214,14 @@ pc_status pc_model_set_loop_length(pc_model *model,
 
 /**
  * Sets a function S of time, coordinates and constants that is claimed to solve
- * Hamilton–Jacobi's equation; pc_system_theory examines the claim. Motions do not depend on it.
+ * Hamilton–Jacobi's equation; pc_system_theory examines the claim. Motions do not depend on this
+ * function.
  */
 pc_status pc_model_set_action(pc_model *model, const char *expression, pc_error **error);
 
 /**
- * Adds a constant of the action, with a value near which the action is defined: if it cannot be
- * proved that the action solves the equation, this is tested numerically near these values.
+ * Adds a constant of the action, with a value near which the action is defined: if no proof is
+ * found that the action solves the equation, the claim is tested numerically near these values.
  */
 pc_status pc_model_add_action_constant(pc_model *model,
                                        const char *name,
@@ -1315,14 +1318,14 @@ pc_status pc_model_set_form(pc_model *model, const char *form, pc_error **error)
 pc_status pc_cancel_new(pc_cancel **cancel, pc_error **error);
 
 /**
- * Ends derivations and integrations with PC_LIMIT: those under way end soon, later ones as soon as
- * they begin. It takes no lock and allocates nothing: it is the one function that a signal handler
- * may call. NULL is allowed.
+ * Ends derivations and integrations with PC_LIMIT: those under way end soon, and later ones as
+ * soon as they begin. It takes no lock and allocates nothing: it is the one function that a signal
+ * handler may call. NULL is allowed.
  */
 void pc_cancel_request(const pc_cancel *cancel);
 
 /**
- * 1 after pc_cancel_request, else 0; 0 for NULL.
+ * Returns 1 after pc_cancel_request, else 0; 0 for NULL.
  */
 int pc_cancel_is_requested(const pc_cancel *cancel);
 
@@ -1480,7 +1483,7 @@ pc_status pc_system_set_parameters(pc_system *system,
 pc_status pc_system_set_parameter(pc_system *system, size_t index, double value, pc_error **error);
 
 /**
- * Writes the index of a component of the state, from 0, by its name. PC_NOT_FOUND if no
+ * Writes the index of a component of the state, from 0, by its name. Returns PC_NOT_FOUND if no
  * component has this name.
  */
 pc_status pc_system_find(const pc_system *system,
@@ -1489,7 +1492,7 @@ pc_status pc_system_find(const pc_system *system,
                          pc_error **error);
 
 /**
- * Writes the index of a parameter or input, from 0, by its name, as pc_system_find.
+ * Writes the index of a parameter or input, from 0, by its name, as pc_system_find does.
  */
 pc_status pc_system_find_parameter(const pc_system *system,
                                    const char *name,
@@ -1497,7 +1500,7 @@ pc_status pc_system_find_parameter(const pc_system *system,
                                    pc_error **error);
 
 /**
- * Writes the index of an observable, from 0, by its name, as pc_system_find.
+ * Writes the index of an observable, from 0, by its name, as pc_system_find does.
  */
 pc_status pc_system_find_observable(const pc_system *system,
                                     const char *name,
@@ -1524,14 +1527,15 @@ const char *pc_system_force_name(const pc_system *system, size_t index);
 
 /**
  * Sets the function that computes the external forces, all at once: the Q_s of the declared
- * quasi-velocities. Until then nothing that needs them can be evaluated. `jacobian` may be NULL:
- * the derivatives of the forces, and only these, are then difference quotients.
+ * quasi-velocities. Until it is set, nothing that needs these forces can be evaluated. `jacobian`
+ * may be NULL: the derivatives of the forces, and only these, are then computed as difference
+ * quotients.
  *
  * Copies, kernels and solvers made from the system afterwards share the functions and `user`;
  * those made before keep the functions they had. The functions are called on whichever thread
- * evaluates, and so on several at the same time if several threads use copies. They may call any
- * function on other handles, and on the same system those that return names (pc_system_..._name)
- * and sizes.
+ * evaluates; if several threads use copies, several calls may run at the same time. They may call
+ * any function on other handles, and on the same system those that return names
+ * (pc_system_..._name) and sizes.
  *
  * `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else
  * when the last handle that shares it is freed or given another function. It must not use a
@@ -1696,8 +1700,8 @@ pc_status pc_system_observe(const pc_system *system,
                             pc_error **error);
 
 /**
- * Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: the
- * first of the observables, which should stay constant.
+ * Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: these are
+ * the first of the observables, and should stay constant.
  */
 pc_status pc_system_integrals(const pc_system *system,
                               double t,
@@ -1708,7 +1712,7 @@ pc_status pc_system_integrals(const pc_system *system,
                               pc_error **error);
 
 /**
- * Writes the energy y_s η_s − L at (t, y). No function of external forces is called.
+ * Writes the energy y_s η_s − L at (t, y). No function that computes external forces is called.
  */
 pc_status pc_system_energy(const pc_system *system,
                            double t,
@@ -1743,7 +1747,7 @@ pc_status pc_system_constraint_residuals(const pc_system *system,
 
 /**
  * Adds an event, which occurs where the expression `when` passes through zero in the given
- * direction, a pc_direction. If `terminal` is not 0 it ends an integration with PC_EVENT.
+ * direction, a pc_direction. If `terminal` is not 0, the event ends an integration with PC_EVENT.
  * Simultaneous events are handled in the order in which they were added.
  */
 pc_status pc_model_add_event(pc_model *model,
@@ -1756,7 +1760,7 @@ pc_status pc_model_add_event(pc_model *model,
 /**
  * Adds a reset to an event: where the event occurs, the coordinate, quasi-velocity or
  * velocity `x'` called `variable` takes the value of the expression. All resets of an event take
- * effect together and use the state before it.
+ * effect together and use the state before the event.
  */
 pc_status pc_model_add_event_reset(pc_model *model,
                                    const char *event,
@@ -1781,19 +1785,19 @@ const char *pc_system_event_name(const pc_system *system, size_t index);
 int pc_system_event_direction(const pc_system *system, size_t index);
 
 /**
- * 1 if an event ends the integration, else 0.
+ * Returns 1 if an event ends the integration, else 0.
  */
 int pc_system_event_is_terminal(const pc_system *system, size_t index);
 
 /**
- * 1 if an event resets the state, else 0.
+ * Returns 1 if an event resets the state, else 0.
  */
 int pc_system_event_resets(const pc_system *system, size_t index);
 
 /**
  * Writes the functions of the events at (t, y), as many as pc_system_event_count: an event
- * occurs where its function passes through zero. Where a function has no value, the number is
- * not finite.
+ * occurs where its function passes through zero. Where a function has no value, its entry is not a
+ * finite number.
  */
 pc_status pc_system_events(const pc_system *system,
                            double t,
@@ -1817,7 +1821,7 @@ pc_status pc_system_event_reset(const pc_system *system,
 /**
  * Writes the mass matrix M = ∂²L/∂η∂η at (t, y), k × k for the k quasi-velocities of the state,
  * so `length` is k*k; k is pc_system_dim less pc_system_coordinate_count and
- * pc_system_state_count. Rows for multipliers are not part of it. The first call derives M, as
+ * pc_system_state_count. Rows for multipliers are not part of M. The first call derives M, as
  * pc_system_new derives equations.
  */
 pc_status pc_system_mass_matrix(const pc_system *system,
@@ -1880,7 +1884,7 @@ pc_status pc_system_structure_coefficients(const pc_system *system,
  * Writes the residual of the equations for ydot in the form expected by codes for implicit
  * equations F(t, y, ẏ) = 0: ẋ − b η − b_0, then M η̇ − r, without dividing by M. With multipliers,
  * whose reactions are eliminated, the second part is M times the error of η̇; in the canonical
- * form the residual is ẏ − f. The first call derives, as pc_system_new does.
+ * form the residual is ẏ − f. The first call derives equations, as pc_system_new does.
  */
 pc_status pc_system_residual(const pc_system *system,
                              double t,
@@ -1900,7 +1904,7 @@ pc_status pc_system_residual(const pc_system *system,
  *
  * so that (x_i, H) = ẋ_i and (y_s, H) = ẏ_s where nothing depends on time and there are no
  * forces. The functions are expressions of the model in coordinates and velocities; the
- * momenta y_s = ∂L/∂η_s are substituted. Under nonholonomic constraints it is the
+ * momenta y_s = ∂L/∂η_s are substituted. Under nonholonomic constraints the bracket is the
  * almost-Poisson bracket of the independent momenta. Each call derives equations, as pc_system_new
  * does.
  */
@@ -2028,15 +2032,15 @@ pc_status pc_kernel_set_parameters(pc_kernel *kernel,
  * Writes ydot = f(t, y), both of pc_system_dim numbers, which is not checked; they must not
  * share memory. `kernel` is a pc_kernel of this thread.
  *
- * Returns 0; 1 where f cannot be evaluated and a smaller step may help; −1 where no step
- * helps. pc_system_rhs at the same (t, y) says why. It is the function that GSL's odeiv2
- * takes, with the kernel as `params`.
+ * Returns 0 on success, 1 where f cannot be evaluated but a smaller step may help, and −1 where no
+ * step helps. pc_system_rhs at the same (t, y) says why. It has the form of the functions that
+ * GSL's odeiv2 takes, with the kernel as `params`.
  */
 int pc_kernel_rhs(double t, const double *y, double *ydot, void *kernel);
 
 /**
- * Writes ∂f/∂y, dim × dim and column-major; otherwise as pc_kernel_rhs. The first call compiles
- * it.
+ * Writes ∂f/∂y, dim × dim and column-major; otherwise it is like pc_kernel_rhs. The first call
+ * compiles it.
  */
 int pc_kernel_jacobian(double t,
                        const double *y,
@@ -2044,10 +2048,10 @@ int pc_kernel_jacobian(double t,
                        void *kernel);
 
 /**
- * Writes f(t, y) of `count` states, which are given one after the other in `states`, to `rates`,
- * in the same order. Otherwise as pc_kernel_rhs: returns 1 if f cannot be evaluated at some
- * states, whose rates are then NaN; −1 at a state where no step helps, and the rates of the states
- * after it are not written.
+ * Writes f(t, y) for `count` states, which are given one after the other in `states`, to `rates`,
+ * in the same order. Otherwise it is like pc_kernel_rhs: it returns 1 if f cannot be evaluated at
+ * some states, whose rates are then NaN; −1 at a state where no step helps, and the rates of the
+ * states after it are not written.
  */
 int pc_kernel_rhs_many(double t, const double *states, size_t count, double *rates, void *kernel);
 
@@ -2255,7 +2259,7 @@ pc_status pc_solver_sensitivity(const pc_solver *solver,
  * Writes the derivative of y of the given order, 0 for y itself, at a time in the last internal
  * step, from the polynomial of the method, whose degree is the order of that step. The step
  * extends from step_time − last_step to step_time of pc_statistics, but not beyond an event; there
- * is no such step before the first one and after a reset. y satisfies the constraints; its
+ * is no such step before the first step or just after a reset. y satisfies the constraints; its
  * derivatives are those of the polynomial.
  */
 pc_status pc_solver_interpolate(pc_solver *solver,
@@ -2268,15 +2272,15 @@ pc_status pc_solver_interpolate(pc_solver *solver,
 /**
  * Integrates to the time t, which must differ from that of the solver, as pc_solver_advance
  * does, and records the motion from the previous time of the solver: (order + 2) × dim numbers for
- * each internal step. `dense` is also made with PC_EVENT and PC_STOPPED, and then ends where the
- * integration did.
+ * each internal step. `dense` is also made when PC_EVENT or PC_STOPPED is returned; it then ends
+ * where the integration ended.
  */
 pc_status pc_solver_run_dense(pc_solver *solver, double t, pc_dense **dense, pc_error **error);
 
 /**
- * Writes y(t). At an event this is the state after it, except at the very end, where it is
- * the limit from before. Inside a step it deviates from the constraints by the error of a step;
- * pc_system_project moves it onto them.
+ * Writes y(t). At an event this is the state after the event, except at the very end of the
+ * motion, where it is the limit from before. Inside a step the state deviates from the constraints
+ * by the error of a step; pc_system_project moves it onto the constraints.
  */
 pc_status pc_dense_eval(const pc_dense *dense,
                         double t,
@@ -2285,7 +2289,8 @@ pc_status pc_dense_eval(const pc_dense *dense,
                         pc_error **error);
 
 /**
- * Writes the rate of y at t. It may jump by the error of a step where one step meets the next.
+ * Writes the rate of y at t. The rate may jump by the error of a step where one step meets the
+ * next.
  */
 pc_status pc_dense_rate(const pc_dense *dense,
                         double t,
@@ -2304,7 +2309,8 @@ size_t pc_dense_dim(const pc_dense *dense);
 double pc_dense_t_begin(const pc_dense *dense);
 
 /**
- * The time at which the motion ends, before its beginning if it runs back in time; NaN for NULL.
+ * The time at which the motion ends, which precedes its beginning if the motion runs backwards in
+ * time; NaN for NULL.
  */
 double pc_dense_t_end(const pc_dense *dense);
 
@@ -2314,14 +2320,14 @@ double pc_dense_t_end(const pc_dense *dense);
 void pc_dense_free(pc_dense *dense);
 
 /**
- * Writes time and state of a solver as bytes, to be freed with pc_bytes_free and read by
+ * Writes the time and state of a solver as bytes, to be freed with pc_bytes_free and read by
  * pc_solver_restore, possibly in another run of the program. `label` says what the checkpoint
  * belongs to; NULL means the empty text.
  *
  * A multistep method depends on earlier steps, so this solver restarts here too, at order 1:
  * from here on, it and the solvers restored from the checkpoint give the same numbers to the
- * last bit. Events of the model are part of the checkpoint; a solver with events of
- * pc_solver_add_event returns PC_UNSUPPORTED.
+ * last bit. Events of the model are part of the checkpoint; for a solver with events added by
+ * pc_solver_add_event the call returns PC_UNSUPPORTED.
  */
 pc_status pc_solver_checkpoint(pc_solver *solver,
                                const char *label,
@@ -2334,7 +2340,7 @@ pc_status pc_solver_checkpoint(pc_solver *solver,
  * It continues exactly as the original solver did if the system, the parameters and the options
  * are the same. `options` may be NULL. Returns PC_INVALID_CHECKPOINT unless the bytes are exactly
  * what pc_solver_checkpoint wrote, for a model with the same names and equations; the values of
- * parameters may differ. The statistics of the solver count from here.
+ * parameters may differ. The statistics of the solver count the work from the checkpoint on.
  */
 pc_status pc_solver_restore(const pc_system *system,
                             const pc_solver_options *options,
@@ -2344,8 +2350,8 @@ pc_status pc_solver_restore(const pc_system *system,
                             pc_error **error);
 
 /**
- * Writes the label of a checkpoint, to be freed with pc_string_free. PC_INVALID_CHECKPOINT as
- * for pc_solver_restore.
+ * Writes the label of a checkpoint, to be freed with pc_string_free. Returns PC_INVALID_CHECKPOINT
+ * in the same cases as pc_solver_restore.
  */
 pc_status pc_checkpoint_label(const void *data, size_t length, char **label, pc_error **error);
 
@@ -2373,12 +2379,12 @@ pc_status pc_solver_statistics(const pc_solver *solver,
  * `states` has members × dim numbers, member by member, at the time t; NULL for the start of
  * the model, and then t is ignored. `parameters` has members × pc_system_parameter_count
  * numbers; NULL for the current ones of the system. The length given with NULL is 0. `options` may
- * be NULL. `threads` is the number of threads, 0 for one on each core; they have ended when this
- * returns. A member that fails is passed to the observer like any other, with what it reached, and
- * the others continue. An error that all members share, such as one in the times, is reported for
- * each. Returns PC_STOPPED if the observer stops the ensemble, and PC_LIMIT, after the members
- * that were finished, if the time limit or the pc_cancel of the system's options ends it. The
- * system may be used during the call.
+ * be NULL. `threads` is the number of threads, 0 for one on each core; all of them have ended when
+ * the call returns. A member that fails is passed to the observer like any other, with the rows
+ * that it reached, and the others continue. An error that all members share, such as one in the
+ * times, is reported for each member. Returns PC_STOPPED if the observer stops the ensemble, and
+ * PC_LIMIT if the time limit or the pc_cancel of the system's options ends it; the members that
+ * were finished have then been passed to the observer. The system may be used during the call.
  */
 pc_status pc_ensemble_run(const pc_system *system,
                           const pc_solver_options *options,

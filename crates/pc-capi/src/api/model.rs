@@ -205,7 +205,7 @@ pub unsafe extern "C" fn pc_model_free(model: *mut pc_model) {
 /// Calls `change` with the content of the model.
 ///
 /// # Safety
-/// `model` is null or a live handle, `error` null or memory for a pointer.
+/// `model` is null or a live handle, and `error` is null or points to memory for a pointer.
 pub(crate) unsafe fn change(
     model: *mut pc_model,
     error: *mut *mut pc_error,
