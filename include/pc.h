@@ -178,7 +178,7 @@ typedef enum {
    */
   PC_REDUCED = 2,
   /**
-   * The same in momenta: Lie–Poisson equations.
+   * The same equations in momenta: Lie–Poisson equations.
    */
   PC_LIE_POISSON = 3,
   /**
@@ -206,7 +206,7 @@ typedef enum {
   /**
    * The explicit Runge–Kutta method of order 8 of Dormand and Prince, for systems that are
    * not stiff at tolerances of 1e-6 and below: the fastest where the equations are short. It has
-   * no sensitivities, and no iteration, linear solver or highest order to choose.
+   * no sensitivities, and offers no choice of iteration, linear solver or highest order.
    */
   PC_DOP853 = 2,
   /**
@@ -361,9 +361,9 @@ typedef struct {
    */
   int reserved;
   /**
-   * Maximum number of bytes that the expressions of a derivation may take, by estimate; 0, the
+   * Maximum number of bytes, by estimate, that the expressions of a derivation may take; 0, the
    * default, for 4 GiB. Beyond it a call returns PC_LIMIT. The limit applies separately to
-   * pc_system_new and to each later call that derives; so do the next two.
+   * pc_system_new and to each later call that derives; so do the next two fields.
    */
   uint64_t memory_limit;
   /**
@@ -407,7 +407,7 @@ typedef struct {
    */
   double relative_tolerance;
   /**
-   * Absolute tolerance of all components, positive; 1e-12 by default.
+   * Absolute tolerance for all components, positive; 1e-12 by default.
    */
   double absolute_tolerance;
   /**
@@ -440,11 +440,10 @@ typedef struct {
    */
   double stop_time;
   /**
-   * Number of equal parts of each step, at least 1, at whose ends the functions of events are
-   * sampled that are not expressions in the state alone (those of your program, and those that
-   * are read through constraints, momenta or tables); they are sampled more closely where the
-   * values leave doubt; 4 by default. Between two such times an even number of zeros may be
-   * missed.
+   * Number of equal parts of each step, at least 1; 4 by default. Functions of events that are
+   * not expressions in the state alone (those of your program, and those that are read through
+   * constraints, momenta or tables) are sampled at the ends of the parts, and more closely where
+   * the values leave doubt. Between two such times an even number of zeros may be missed.
    */
   uint32_t samples_per_step;
   /**
@@ -494,17 +493,17 @@ typedef void (*pc_destroy)(void *user);
 
 /**
  * Receives the state at each output time. Returns 0 to continue; anything else ends the run
- * with PC_STOPPED. It may call any function on other handles, and must return: no exceptions,
- * no longjmp.
+ * with PC_STOPPED. It may call any function on other handles, and must return normally: no
+ * exceptions, no longjmp.
  */
 typedef int (*pc_observer)(double t, const double *y, size_t y_length, void *user);
 
 /**
  * Receives each event where it occurs, by its number among the events of the solver, with the
- * states before and after it, which are valid during the call. Among simultaneous events each has
- * the state that it found and the state that it left. Returns 0 to continue; anything else ends
- * the call with PC_STOPPED, or with PC_EVENT where the event is terminal. Otherwise as
- * pc_observer.
+ * states before and after it, which are valid during the call. Each of several simultaneous events
+ * is given with the state that it found and the state that it left. Returns 0 to continue;
+ * anything else ends the call with PC_STOPPED, or with PC_EVENT where the event is terminal.
+ * Otherwise it is like pc_observer.
  */
 typedef int (*pc_event_observer)(size_t event,
                                  double t,
@@ -516,8 +515,8 @@ typedef int (*pc_event_observer)(size_t event,
 /**
  * Writes g(t, y), which passes through zero where the event occurs. Returns 0; anything else
  * ends the integration with PC_INTEGRATION, as does a value that is not finite or not
- * written. It should depend only on its arguments and be smooth. It must return: no exceptions, no
- * longjmp.
+ * written. It should depend only on its arguments and be smooth. It must return normally: no
+ * exceptions, no longjmp.
  */
 typedef int (*pc_event_function)(double t,
                                  const double *y,
@@ -526,12 +525,13 @@ typedef int (*pc_event_function)(double t,
                                  void *user);
 
 /**
- * Turns the state y before the event into the state after it. Otherwise as pc_event_function.
+ * Turns the state y before the event into the state after it. Otherwise it is like
+ * pc_event_function.
  */
 typedef int (*pc_event_reset)(double t, double *y, size_t y_length, void *user);
 
 /**
- * Counters since the start of an integration, and data of its last internal step. The structure
+ * Counters since the start of an integration, and data on its last internal step. The structure
  * may grow at the end.
  */
 typedef struct {
@@ -560,7 +560,7 @@ typedef struct {
    */
   uint64_t nonlinear_failures;
   /**
-   * Factorisations, or renewals of the preconditioner.
+   * Factorisations, or updates of the preconditioner.
    */
   uint64_t linear_setups;
   /**
@@ -584,8 +584,8 @@ typedef struct {
    */
   double step_time;
   /**
-   * Steps shortened to end where the explicit dependence on time shows something that the
-   * motion so far gives no hint of: the beginning of a pulse, a jump.
+   * Steps shortened to end where the equations, as explicit functions of time, change in a way
+   * of which the motion so far gives no hint, as at a jump or at the beginning of a pulse.
    */
   uint64_t limited_steps;
   /**
@@ -593,7 +593,7 @@ typedef struct {
    */
   uint64_t implicit_steps;
   /**
-   * How often PC_AUTO changed its method.
+   * How often PC_AUTO switched between its methods.
    */
   uint64_t changes;
   /**
@@ -646,7 +646,7 @@ typedef struct {
 typedef int (*pc_member_observer)(const pc_member *member, void *user);
 
 /**
- * The version of the library, such as "0.1.0". Static.
+ * The version of the library, such as "0.1.0". The text is static.
  */
 const char *pc_version(void);
 
@@ -667,7 +667,7 @@ pc_status pc_error_status(const pc_error *error);
 
 /**
  * The message, in UTF-8, never NULL; it lives as long as the error. For a model it shows the line
- * at fault and what would be correct, in several lines of text. Empty for NULL.
+ * at fault and what would be correct, on several lines. Empty for NULL.
  */
 const char *pc_error_message(const pc_error *error);
 
@@ -1234,7 +1234,7 @@ pc_status pc_model_add_action_constant(pc_model *model,
 pc_status pc_model_set_description(pc_model *model, const char *description, pc_error **error);
 
 /**
- * Sets the reference from which the model comes.
+ * Sets the reference to the source of the model.
  */
 pc_status pc_model_set_reference(pc_model *model, const char *reference, pc_error **error);
 
@@ -1245,7 +1245,7 @@ pc_status pc_model_set_reference(pc_model *model, const char *reference, pc_erro
 pc_status pc_model_set_start(pc_model *model, const char *name, double value, pc_error **error);
 
 /**
- * Changes a start value to an expression in parameters; otherwise as pc_model_set_start.
+ * Changes a start value to an expression in parameters; otherwise this is like pc_model_set_start.
  */
 pc_status pc_model_set_start_expression(pc_model *model,
                                         const char *name,
@@ -1267,7 +1267,7 @@ pc_status pc_model_set_constraint_kind(pc_model *model,
 pc_status pc_model_set_start_time(pc_model *model, double t, pc_error **error);
 
 /**
- * Sets the time to which the program `pc` runs the model. It is written to the text, as are the
+ * Sets the time until which the program `pc` runs the model. It is written to the text, as are the
  * settings of the next five functions; solvers take pc_solver_options instead.
  */
 pc_status pc_model_set_end_time(pc_model *model, double t, pc_error **error);
@@ -1346,8 +1346,8 @@ void pc_solver_options_init(pc_solver_options *options, size_t size);
 
 /**
  * Derives and compiles the equations of a model. `options` may be NULL. This takes from
- * milliseconds to seconds (for a hundred bodies); other functions are fast unless they say
- * that they derive.
+ * milliseconds to seconds (the latter for a hundred bodies); other functions are fast unless they
+ * say that they derive.
  */
 pc_status pc_system_new(const pc_model *model,
                         const pc_system_options *options,
@@ -1446,9 +1446,9 @@ pc_status pc_system_start(const pc_system *system,
 
 /**
  * Writes the absolute tolerance of each component of the state with which the program `pc` would
- * run the system from its start to t_end: that of the text if it gives one, else min(1e-12,
- * relative·s) for a component of scale s at the start, where f is evaluated once, but no less than
- * the rounding error of the largest component. pc_solver_options takes them as
+ * run the system from its start to t_end: the tolerance in the text if it gives one, else
+ * min(1e-12, relative·s) for a component of scale s at the start, where f is evaluated once, but
+ * no less than the rounding error of the largest component. pc_solver_options takes them as
  * absolute_tolerances.
  */
 pc_status pc_system_absolute_tolerances(const pc_system *system,
@@ -1477,8 +1477,8 @@ pc_status pc_system_set_parameters(pc_system *system,
                                    pc_error **error);
 
 /**
- * Sets one parameter, by its index; parameters that are expressions in it follow, unless they
- * have themselves been set. Otherwise as pc_system_set_parameters.
+ * Sets one parameter, by its index; parameters that are expressions in it change with it, unless
+ * they have themselves been set. Otherwise this is like pc_system_set_parameters.
  */
 pc_status pc_system_set_parameter(pc_system *system, size_t index, double value, pc_error **error);
 
@@ -1637,8 +1637,9 @@ pc_status pc_system_jvp(const pc_system *system,
 /**
  * Writes ∂f/∂p, dim × pc_system_parameter_count and column-major, so `length` is their product.
  * Each derivative is taken with all other parameters fixed, even those that are expressions in
- * this one; for an input with a table it is that with respect to the value of the input. Returns
- * PC_UNSUPPORTED unless pc_model_differentiate was called, and with external forces.
+ * this one; for an input with a table, the derivative is taken with respect to the value of the
+ * input. Returns PC_UNSUPPORTED if pc_model_differentiate was not called, or if there are external
+ * forces.
  */
 pc_status pc_system_parameter_jacobian(const pc_system *system,
                                        double t,
@@ -1650,8 +1651,8 @@ pc_status pc_system_parameter_jacobian(const pc_system *system,
 
 /**
  * Writes ∂f/∂t, which Rosenbrock's methods need; it has the length of the state. The first call
- * derives it, as pc_system_new derives equations, unless f is free of t. Returns PC_UNSUPPORTED
- * with external forces, whose ∂/∂t is unknown, and with inputs that have tables.
+ * derives it, as pc_system_new derives equations, unless f does not contain t. Returns
+ * PC_UNSUPPORTED if there are external forces, whose ∂/∂t is unknown, or inputs that have tables.
  */
 pc_status pc_system_time_derivative(const pc_system *system,
                                     double t,
@@ -1956,11 +1957,11 @@ pc_status pc_system_print(const pc_system *system, int format, char **text, pc_e
  * names, runs of other characters one `_`, with none at the ends; `n_` precedes a leading digit,
  * `_` follows a keyword of C. The source has the right-hand side, its Jacobian, the mass matrix,
  * the energy, the integrals and the outputs in terms of independent quasi-velocities, or of
- * momenta if these are in the state of the system, and explains its use at its head. External
- * forces are parameters that come after the others; their names are `Q_` followed by that of their
- * quasi-velocity, and they are zero until they are set. If `t_end` is finite, it can be compiled
- * with -DNAME_MAIN (in capitals) to a program that integrates from the start of the model to that
- * time. Free both texts with pc_string_free.
+ * momenta if these are in the state of the system, and begins with a comment that explains its
+ * use. External forces are parameters that come after the others; the name of each is `Q_`
+ * followed by the name of its quasi-velocity, and they are zero until they are set. If `t_end` is
+ * finite, the source can be compiled with -DNAME_MAIN (in capitals) into a program that integrates
+ * from the start of the model to that time. Free both texts with pc_string_free.
  */
 pc_status pc_system_emit_c(const pc_system *system,
                            const char *name,
@@ -1991,16 +1992,17 @@ pc_status pc_system_theory(const pc_system *system,
  * Derives the equations of the model a second time, by a route that shares only the text of the
  * model with the first, and compares both at `states` random states on the constraints, for the
  * current parameters: velocities, accelerations or rates of momenta, reactions, the energy and its
- * rate of change, integrals and outputs. 0 states mean 100. `text` says how closely they agree and
- * what was not compared, on separate lines; it may be NULL, and is freed with pc_string_free.
- * External forces are taken to be 0. Returns PC_DISAGREEMENT, with the quantity and both its
- * values, if the two differ, which is a defect of the library; PC_UNSUPPORTED if there is no
- * second derivation for this model. The call takes as long as pc_system_new.
+ * rate of change, integrals and outputs. A value of 0 stands for 100 states. `text` says how
+ * closely they agree and what was not compared, on separate lines; it may be NULL, and is freed
+ * with pc_string_free. External forces are taken to be 0. Returns PC_DISAGREEMENT, with the
+ * quantity and both its values, if the two derivations differ, which is a defect of the library;
+ * PC_UNSUPPORTED if there is no second derivation for this model. The call takes as long as
+ * pc_system_new.
  */
 pc_status pc_system_verify(const pc_system *system, size_t states, char **text, pc_error **error);
 
 /**
- * As pc_system_verify, at one state of the system, such as that of a solver: its time, and the
+ * As pc_system_verify, but at one state of the system, such as that of a solver: its time, and the
  * state that pc_solver_advance has written.
  */
 pc_status pc_system_verify_at(const pc_system *system,
@@ -2086,16 +2088,16 @@ void pc_solver_free(pc_solver *solver);
  * Makes a solver continue with the current parameters and inputs of the system: it restarts
  * at its current state, at order 1. This is how inputs change between two calls of
  * pc_solver_advance. The system must be that of the solver, or one of the same model. Returns
- * PC_UNSUPPORTED with events of pc_solver_add_event.
+ * PC_UNSUPPORTED if the solver has events added by pc_solver_add_event.
  */
 pc_status pc_solver_take_parameters(pc_solver *solver, const pc_system *system, pc_error **error);
 
 /**
  * Integrates to the time t, in the direction of the first step, and writes the state there.
- * With PC_EVENT and PC_STOPPED it is the state where the integration ended, and
+ * When PC_EVENT or PC_STOPPED is returned, it is the state where the integration ended, and
  * pc_solver_time gives the time; the next call continues from there. After a failure
- * pc_solver_time and pc_solver_state give what was reached. PC_LIMIT is such a failure; it is due
- * to the time limit or the pc_cancel of the system's options.
+ * pc_solver_time and pc_solver_state give the time and state that were reached. PC_LIMIT is such a
+ * failure; it is due to the time limit or the pc_cancel of the system's options.
  */
 pc_status pc_solver_advance(pc_solver *solver,
                             double t,
@@ -2106,7 +2108,7 @@ pc_status pc_solver_advance(pc_solver *solver,
 /**
  * Takes one internal step in the direction of `towards`, or the part of it before an event, and
  * writes the time at its end, which may lie beyond `towards`, and the state there; both are also
- * written with PC_EVENT and PC_STOPPED.
+ * written when PC_EVENT or PC_STOPPED is returned.
  */
 pc_status pc_solver_step(pc_solver *solver,
                          double towards,
@@ -2119,8 +2121,7 @@ pc_status pc_solver_step(pc_solver *solver,
  * Integrates through the times, which increase or decrease throughout, and calls `observer`
  * at each with the state, which is valid during the call, and with `user`. Returns PC_STOPPED if
  * the observer stops it. At the time of an event the observer receives the state after the event;
- * a terminal event brings the last call of the observer, at the time of the event, and PC_EVENT is
- * returned.
+ * at a terminal event the observer is called for the last time, and PC_EVENT is returned.
  */
 pc_status pc_solver_run(pc_solver *solver,
                         const double *times,
@@ -2141,8 +2142,8 @@ pc_status pc_solver_state(const pc_solver *solver, double *y, size_t y_length, p
 
 /**
  * Sets the observer that is called for each event from now on, in place of the previous one; NULL
- * for none. `user` has to live until another observer is set or the solver is freed. The observer
- * is called during the calls that integrate, on their thread.
+ * for none. `user` must stay valid until another observer is set or the solver is freed. The
+ * observer is called during the calls that integrate, on their thread.
  */
 pc_status pc_solver_observe_events(pc_solver *solver,
                                    pc_event_observer observer,
@@ -2150,9 +2151,9 @@ pc_status pc_solver_observe_events(pc_solver *solver,
                                    pc_error **error);
 
 /**
- * The same, with a `user` that the solver owns: `destroy`, unless NULL, is called with it exactly
- * once: by this call if it fails or `observer` is NULL, else when another observer takes its place
- * or the solver is freed. It must not use the solver while the solver is being freed.
+ * The same, with a `user` that the solver owns. `destroy`, unless NULL, is called with `user`
+ * exactly once: by this call if it fails or `observer` is NULL, else when another observer takes
+ * its place or the solver is freed. It must not use the solver while the solver is being freed.
  */
 pc_status pc_solver_set_event_observer(pc_solver *solver,
                                        pc_event_observer observer,
@@ -2164,8 +2165,8 @@ pc_status pc_solver_set_event_observer(pc_solver *solver,
  * Follows an event of your program, numbered after those of the model and those added before: it
  * occurs where `function` passes through zero in the given direction, a pc_direction. There
  * `reset`, unless NULL, changes the state, which is then projected onto the constraints; if
- * `terminal` is not 0 the event ends the call with PC_EVENT. Must be called before the first step.
- * `name` is for messages.
+ * `terminal` is not 0 the event ends the call with PC_EVENT. The call must be made before the
+ * first step. `name` is for messages.
  *
  * `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else by
  * pc_solver_free. It must not use the solver.
@@ -2233,11 +2234,11 @@ pc_status pc_system_start_by_parameter(const pc_system *system,
 /**
  * Adds, before the first step, a sensitivity that a solver integrates with the motion: the
  * derivative of the state with respect to parameter number `parameter`, from 0. `start` is the
- * derivative of the start, which pc_system_start_by_parameter gives for that of the model; NULL,
- * of length 0, for a start that does not depend on the parameter. Needs pc_model_differentiate.
- * Sensitivities jump where an event of the model resets the state; with an event of the program
- * that does so, the call returns PC_INVALID_ARGUMENT. For an input with a table it is the
- * derivative with respect to a shift of all its values.
+ * derivative of the start, which pc_system_start_by_parameter gives for the start of the model;
+ * NULL, of length 0, for a start that does not depend on the parameter. Needs
+ * pc_model_differentiate. Sensitivities jump where an event of the model resets the state; with an
+ * event of the program that does so, the call returns PC_INVALID_ARGUMENT. For an input with a
+ * table, the sensitivity is the derivative with respect to a shift of all values of the table.
  */
 pc_status pc_solver_add_sensitivity(pc_solver *solver,
                                     size_t parameter,

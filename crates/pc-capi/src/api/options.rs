@@ -25,7 +25,7 @@ pub enum pc_form {
     /// by multipliers, this form and those below give PC_INCONSISTENT_MODEL, unless
     /// pc_model_add_independent says which velocities are independent.
     PC_REDUCED = 2,
-    /// The same in momenta: Lie–Poisson equations.
+    /// The same equations in momenta: Lie–Poisson equations.
     PC_LIE_POISSON = 3,
     /// Poincaré's equations, in quasi-velocities that are orthonormal in the kinetic metric.
     PC_ORTHONORMAL = 4,
@@ -43,9 +43,9 @@ pub struct pc_system_options {
     pub form: c_int,
     /// Reserved; must be 0.
     pub reserved: c_int,
-    /// Maximum number of bytes that the expressions of a derivation may take, by estimate; 0, the
+    /// Maximum number of bytes, by estimate, that the expressions of a derivation may take; 0, the
     /// default, for 4 GiB. Beyond it a call returns PC_LIMIT. The limit applies separately to
-    /// pc_system_new and to each later call that derives; so do the next two.
+    /// pc_system_new and to each later call that derives; so do the next two fields.
     pub memory_limit: u64,
     /// Maximum time in seconds, positive, for a derivation and for each call of a solver or an
     /// ensemble of the system; 0, the default, for no limit.
@@ -121,7 +121,7 @@ pub enum pc_method {
     PC_BDF = 1,
     /// The explicit Runge–Kutta method of order 8 of Dormand and Prince, for systems that are
     /// not stiff at tolerances of 1e-6 and below: the fastest where the equations are short. It has
-    /// no sensitivities, and no iteration, linear solver or highest order to choose.
+    /// no sensitivities, and offers no choice of iteration, linear solver or highest order.
     PC_DOP853 = 2,
     /// Taylor's method of adaptive order and step, for systems that are not stiff: the fastest at
     /// tolerances of 1e-8 and below, and the one that follows a motion to within rounding errors.
@@ -175,7 +175,7 @@ pub struct pc_solver_options {
     pub max_order: c_int,
     /// Relative tolerance, positive; 1e-9 by default.
     pub relative_tolerance: f64,
-    /// Absolute tolerance of all components, positive; 1e-12 by default.
+    /// Absolute tolerance for all components, positive; 1e-12 by default.
     pub absolute_tolerance: f64,
     /// Absolute tolerances, one for each component, copied; NULL, the default, for the one above.
     pub absolute_tolerances: *const f64,
@@ -192,11 +192,10 @@ pub struct pc_solver_options {
     pub max_step: f64,
     /// A time beyond which the equations are never evaluated; infinity, the default, for none.
     pub stop_time: f64,
-    /// Number of equal parts of each step, at least 1, at whose ends the functions of events are
-    /// sampled that are not expressions in the state alone (those of your program, and those that
-    /// are read through constraints, momenta or tables); they are sampled more closely where the
-    /// values leave doubt; 4 by default. Between two such times an even number of zeros may be
-    /// missed.
+    /// Number of equal parts of each step, at least 1; 4 by default. Functions of events that are
+    /// not expressions in the state alone (those of your program, and those that are read through
+    /// constraints, momenta or tables) are sampled at the ends of the parts, and more closely where
+    /// the values leave doubt. Between two such times an even number of zeros may be missed.
     pub samples_per_step: u32,
     /// Reserved; must be 0.
     pub reserved: u32,

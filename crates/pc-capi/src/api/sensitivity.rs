@@ -54,11 +54,11 @@ pub unsafe extern "C" fn pc_system_start_by_parameter(
 
 /// Adds, before the first step, a sensitivity that a solver integrates with the motion: the
 /// derivative of the state with respect to parameter number `parameter`, from 0. `start` is the
-/// derivative of the start, which pc_system_start_by_parameter gives for that of the model; NULL,
-/// of length 0, for a start that does not depend on the parameter. Needs pc_model_differentiate.
-/// Sensitivities jump where an event of the model resets the state; with an event of the program
-/// that does so, the call returns PC_INVALID_ARGUMENT. For an input with a table it is the
-/// derivative with respect to a shift of all its values.
+/// derivative of the start, which pc_system_start_by_parameter gives for the start of the model;
+/// NULL, of length 0, for a start that does not depend on the parameter. Needs
+/// pc_model_differentiate. Sensitivities jump where an event of the model resets the state; with an
+/// event of the program that does so, the call returns PC_INVALID_ARGUMENT. For an input with a
+/// table, the sensitivity is the derivative with respect to a shift of all values of the table.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_add_sensitivity(
     solver: *mut pc_solver,

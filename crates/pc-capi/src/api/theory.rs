@@ -1,4 +1,4 @@
-//! Printing the analysis of motions, made without integrating them.
+//! Printing an analysis of motions that is made without integrating them.
 
 use std::ffi::{c_char, c_int};
 

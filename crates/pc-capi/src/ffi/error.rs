@@ -58,7 +58,7 @@ pub extern "C" fn pc_error_status(error: Option<&pc_error>) -> pc_status {
 }
 
 /// The message, in UTF-8, never NULL; it lives as long as the error. For a model it shows the line
-/// at fault and what would be correct, in several lines of text. Empty for NULL.
+/// at fault and what would be correct, on several lines. Empty for NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_error_message(error: Option<&pc_error>) -> *const c_char {
     error.map_or(c"".as_ptr(), |error| error.message.as_ptr())

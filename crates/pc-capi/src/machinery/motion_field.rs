@@ -30,7 +30,7 @@ impl MotionField {
         }
     }
 
-    /// A number that distinguishes the field from those with other equations or names.
+    /// A number that distinguishes the field from fields with other equations or names.
     pub(crate) fn digest(&self) -> u64 {
         self.motion().digest()
     }
