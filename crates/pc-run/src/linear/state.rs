@@ -30,7 +30,7 @@ impl At {
 /// Which cyclic coordinates are components of the state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cyclic {
-    /// Those that are at rest.
+    /// The cyclic coordinates that are at rest.
     Keep,
     /// None.
     Drop,
