@@ -260,7 +260,7 @@ typedef enum {
    */
   PC_LINEAR_SPARSE = 2,
   /**
-   * GMRES without a matrix.
+   * Matrix-free GMRES.
    */
   PC_LINEAR_KRYLOV = 3,
 } pc_linear_solver;
@@ -395,7 +395,7 @@ typedef struct {
    */
   int iteration;
   /**
-   * A pc_linear_solver; PC_LINEAR_AUTOMATIC by default. Only for Newton's iteration.
+   * A pc_linear_solver; PC_LINEAR_AUTOMATIC by default. It matters only with Newton's iteration.
    */
   int linear_solver;
   /**
@@ -428,11 +428,11 @@ typedef struct {
    */
   double initial_step;
   /**
-   * Least length of a step; 0, the default, for none.
+   * Minimum length of a step; 0, the default, for none.
    */
   double min_step;
   /**
-   * Largest length of a step; 0, the default, for none.
+   * Maximum length of a step; 0, the default, for none.
    */
   double max_step;
   /**
@@ -607,7 +607,7 @@ typedef struct {
  */
 typedef struct {
   /**
-   * The number of the member, from 0.
+   * The number of the member, counted from 0.
    */
   size_t number;
   /**
@@ -629,7 +629,7 @@ typedef struct {
    */
   const double *states;
   /**
-   * The number of these times and states, also if the member failed.
+   * The number of these times and states, even if the member failed.
    */
   size_t rows;
   /**
@@ -672,18 +672,18 @@ pc_status pc_error_status(const pc_error *error);
 const char *pc_error_message(const pc_error *error);
 
 /**
- * The line of the model text at fault, from 1; 0 if there is none, and for NULL.
+ * The line of the model text at fault, counted from 1; 0 if there is none, and for NULL.
  */
 size_t pc_error_line(const pc_error *error);
 
 /**
- * The column at which the text at fault begins, in characters from 1; 0 if there is none, and
- * for NULL.
+ * The column at which the text at fault begins, in characters counted from 1; 0 if there is none,
+ * and for NULL.
  */
 size_t pc_error_column(const pc_error *error);
 
 /**
- * The byte at which the text at fault begins, from 0; 0 if there is none, and for NULL.
+ * The byte at which the text at fault begins, counted from 0; 0 if there is none, and for NULL.
  */
 size_t pc_error_offset(const pc_error *error);
 
@@ -739,7 +739,7 @@ pc_status pc_model_builtin(const char *name, pc_model **model, pc_error **error)
 size_t pc_builtin_count(void);
 
 /**
- * The name of such a model, from 0; NULL beyond the last. Static.
+ * The name of a model that comes with the library, counted from 0; NULL beyond the last. Static.
  */
 const char *pc_builtin_name(size_t index);
 
@@ -1410,28 +1410,28 @@ size_t pc_system_constraint_count(const pc_system *system);
 size_t pc_system_reaction_count(const pc_system *system);
 
 /**
- * The name of a component of the state, from 0; NULL beyond the last.
+ * The name of a component of the state, counted from 0; NULL beyond the last.
  */
 const char *pc_system_name(const pc_system *system, size_t index);
 
 /**
- * The name of a parameter, from 0; NULL beyond the last.
+ * The name of a parameter, counted from 0; NULL beyond the last.
  */
 const char *pc_system_parameter_name(const pc_system *system, size_t index);
 
 /**
- * The name of an observable, from 0; NULL beyond the last.
+ * The name of an observable, counted from 0; NULL beyond the last.
  */
 const char *pc_system_observable_name(const pc_system *system, size_t index);
 
 /**
- * The name of a constraint that projection maintains, from 0; NULL beyond the last.
+ * The name of a constraint that projection maintains, counted from 0; NULL beyond the last.
  */
 const char *pc_system_constraint_name(const pc_system *system, size_t index);
 
 /**
- * The name of a reaction, `λ_` followed by the name of its constraint, from 0; NULL beyond the
- * last.
+ * The name of a reaction, `λ_` followed by the name of its constraint, counted from 0; NULL beyond
+ * the last.
  */
 const char *pc_system_reaction_name(const pc_system *system, size_t index);
 
@@ -1483,8 +1483,8 @@ pc_status pc_system_set_parameters(pc_system *system,
 pc_status pc_system_set_parameter(pc_system *system, size_t index, double value, pc_error **error);
 
 /**
- * Writes the index of a component of the state, from 0, by its name. Returns PC_NOT_FOUND if no
- * component has this name.
+ * Writes the index of a component of the state, counted from 0, by its name. Returns PC_NOT_FOUND
+ * if no component has this name.
  */
 pc_status pc_system_find(const pc_system *system,
                          const char *name,
@@ -1492,7 +1492,7 @@ pc_status pc_system_find(const pc_system *system,
                          pc_error **error);
 
 /**
- * Writes the index of a parameter or input, from 0, by its name, as pc_system_find does.
+ * Writes the index of a parameter or input, counted from 0, by its name, as pc_system_find does.
  */
 pc_status pc_system_find_parameter(const pc_system *system,
                                    const char *name,
@@ -1500,7 +1500,7 @@ pc_status pc_system_find_parameter(const pc_system *system,
                                    pc_error **error);
 
 /**
- * Writes the index of an observable, from 0, by its name, as pc_system_find does.
+ * Writes the index of an observable, counted from 0, by its name, as pc_system_find does.
  */
 pc_status pc_system_find_observable(const pc_system *system,
                                     const char *name,
@@ -1521,7 +1521,8 @@ pc_status pc_model_add_external_force(pc_model *model, const char *on, pc_error 
 size_t pc_system_force_count(const pc_system *system);
 
 /**
- * The name of the quasi-velocity on which an external force acts, from 0; NULL beyond the last.
+ * The name of the quasi-velocity on which an external force acts, counted from 0; NULL beyond the
+ * last.
  */
 const char *pc_system_force_name(const pc_system *system, size_t index);
 
@@ -1775,7 +1776,7 @@ pc_status pc_model_add_event_reset(pc_model *model,
 size_t pc_system_event_count(const pc_system *system);
 
 /**
- * The name of an event, from 0; NULL beyond the last.
+ * The name of an event, counted from 0; NULL beyond the last.
  */
 const char *pc_system_event_name(const pc_system *system, size_t index);
 
@@ -1809,8 +1810,8 @@ pc_status pc_system_events(const pc_system *system,
                            pc_error **error);
 
 /**
- * Turns the state y before an event, number `event` from 0, into the state after it. An event
- * without resets leaves y unchanged.
+ * Turns the state y before an event, number `event` counted from 0, into the state after it. An
+ * event without resets leaves y unchanged.
  */
 pc_status pc_system_event_reset(const pc_system *system,
                                 size_t event,
@@ -1898,7 +1899,7 @@ pc_status pc_system_residual(const pc_system *system,
                              pc_error **error);
 
 /**
- * Writes the value at (t, y) of the Poisson bracket in coordinates and momenta, (12), of two
+ * Writes the value at (t, y) of the Poisson bracket (12), in coordinates and momenta, of two
  * functions,
  *
  *   (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m,
@@ -1945,7 +1946,7 @@ pc_status pc_system_to_quasi_velocities(const pc_system *system,
 /**
  * Derives and prints the equations, as `pc derive` does: constraints, kinematics, brackets,
  * equations, energy and reactions, or momenta and Hamiltonian, and the operations of one
- * right-hand side. Where constraints are imposed by multipliers, it shows the equations in
+ * right-hand side. Where constraints are imposed by multipliers, the text shows the equations in
  * independent velocities. `format` is a pc_format. Parameters have the values of the model. Free
  * the text with pc_string_free.
  */
@@ -1974,7 +1975,7 @@ pc_status pc_system_emit_c(const pc_system *system,
  * Prints an analysis of the motions that is made without integrating them, as `pc theory` does:
  * momenta and their brackets, Casimirs, integrals, cyclic displacements, invariant measure,
  * Chaplygin's multiplier, Hamilton-Jacobi's equation, steady motions, Routh's reduction. Each
- * claim is marked proved, disproved or open. The integrals sought are polynomials of a `degree`
+ * claim is marked as proved, disproved or open. The integrals sought are polynomials of a `degree`
  * from 1 to 6 in the velocities, whose coefficients are polynomials in the coordinates times 1 or
  * one of the `functions`, expressions of the model; the list may be empty. `format` is a
  * pc_format. Parameters have the values of the model. Everything is derived again, which takes
@@ -2187,7 +2188,7 @@ pc_status pc_solver_add_event(pc_solver *solver,
 size_t pc_solver_event_count(const pc_solver *solver);
 
 /**
- * The name of an event, from 0; NULL beyond the last.
+ * The name of an event, counted from 0; NULL beyond the last.
  */
 const char *pc_solver_event_name(const pc_solver *solver, size_t index);
 
@@ -2221,9 +2222,9 @@ pc_status pc_solver_terminal_event(const pc_solver *solver, size_t *event, pc_er
 
 /**
  * Writes the derivative of the start of the model with respect to parameter number `parameter`,
- * from 0: start values may be expressions in parameters. The call derives the equations. Returns
- * PC_INCONSISTENT_MODEL where there is no start for nearby values of the parameter, for an input
- * with a table, and for a parameter that is an expression in others.
+ * counted from 0: start values may be expressions in parameters. The call derives the equations.
+ * Returns PC_INCONSISTENT_MODEL where there is no start for nearby values of the parameter, for an
+ * input with a table, and for a parameter that is an expression in others.
  */
 pc_status pc_system_start_by_parameter(const pc_system *system,
                                        size_t parameter,
@@ -2233,12 +2234,13 @@ pc_status pc_system_start_by_parameter(const pc_system *system,
 
 /**
  * Adds, before the first step, a sensitivity that a solver integrates with the motion: the
- * derivative of the state with respect to parameter number `parameter`, from 0. `start` is the
- * derivative of the start, which pc_system_start_by_parameter gives for the start of the model;
- * NULL, of length 0, for a start that does not depend on the parameter. Needs
- * pc_model_differentiate. Sensitivities jump where an event of the model resets the state; with an
- * event of the program that does so, the call returns PC_INVALID_ARGUMENT. For an input with a
- * table, the sensitivity is the derivative with respect to a shift of all values of the table.
+ * derivative of the state with respect to parameter number `parameter`, counted from 0. `start` is
+ * the derivative of the start, which pc_system_start_by_parameter gives for the start of the
+ * model; NULL, of length 0, for a start that does not depend on the parameter. Requires that
+ * pc_model_differentiate was called. Sensitivities jump where an event of the model resets the
+ * state; with an event of the program that does so, the call returns PC_INVALID_ARGUMENT. For an
+ * input with a table, the sensitivity is the derivative with respect to a shift of all values of
+ * the table.
  */
 pc_status pc_solver_add_sensitivity(pc_solver *solver,
                                     size_t parameter,
@@ -2247,8 +2249,8 @@ pc_status pc_solver_add_sensitivity(pc_solver *solver,
                                     pc_error **error);
 
 /**
- * Writes sensitivity number `number`, from 0 in the order in which they were added, at the
- * time of the solver; it has the length of the state.
+ * Writes sensitivity number `number`, counted from 0 in the order in which sensitivities were
+ * added, at the time of the solver; it has the length of the state.
  */
 pc_status pc_solver_sensitivity(const pc_solver *solver,
                                 size_t number,
@@ -2272,9 +2274,9 @@ pc_status pc_solver_interpolate(pc_solver *solver,
 
 /**
  * Integrates to the time t, which must differ from that of the solver, as pc_solver_advance
- * does, and records the motion from the previous time of the solver: (order + 2) × dim numbers for
- * each internal step. `dense` is also made when PC_EVENT or PC_STOPPED is returned; it then ends
- * where the integration ended.
+ * does, and records the motion from the previous time of the solver on; this takes (order + 2) ×
+ * dim numbers for each internal step. `dense` is also made when PC_EVENT or PC_STOPPED is
+ * returned; it then ends where the integration ended.
  */
 pc_status pc_solver_run_dense(pc_solver *solver, double t, pc_dense **dense, pc_error **error);
 
@@ -2373,19 +2375,20 @@ pc_status pc_solver_statistics(const pc_solver *solver,
  * Integrates many members through the times, each from its own state and with its own parameters,
  * as a single solver would: the numbers are the same for any number of threads. The events of the
  * model are followed. With PC_AUTO and PC_DOP853, members of a model without events, constraints,
- * kept integrals, tables and explicit dependence on time are integrated side by side in vectors:
- * their last digits may differ from those of a solver, within the tolerances. With PC_AUTO,
- * members that turn out to be stiff are integrated by themselves.
+ * integrals to be kept, tables or explicit dependence on time are integrated side by side in
+ * vectors: their last digits may differ from those of a solver, within the tolerances. With
+ * PC_AUTO, members that turn out to be stiff are integrated by themselves.
  *
  * `states` has members × dim numbers, member by member, at the time t; NULL for the start of
  * the model, and then t is ignored. `parameters` has members × pc_system_parameter_count
- * numbers; NULL for the current ones of the system. The length given with NULL is 0. `options` may
- * be NULL. `threads` is the number of threads, 0 for one on each core; all of them have ended when
- * the call returns. A member that fails is passed to the observer like any other, with the rows
- * that it reached, and the others continue. An error that all members share, such as one in the
- * times, is reported for each member. Returns PC_STOPPED if the observer stops the ensemble, and
- * PC_LIMIT if the time limit or the pc_cancel of the system's options ends it; the members that
- * were finished have then been passed to the observer. The system may be used during the call.
+ * numbers; NULL for the current parameters of the system. The length given with NULL is 0.
+ * `options` may be NULL. `threads` is the number of threads, 0 for one on each core; all of them
+ * have ended when the call returns. A member that fails is passed to the observer like any other,
+ * with the rows that it reached, and the others continue. An error that all members share, such as
+ * one in the times, is reported for each member. Returns PC_STOPPED if the observer stops the
+ * ensemble, and PC_LIMIT if the time limit or the pc_cancel of the system's options ends it; the
+ * members that were finished have then been passed to the observer. The system may be used during
+ * the call.
  */
 pc_status pc_ensemble_run(const pc_system *system,
                           const pc_solver_options *options,

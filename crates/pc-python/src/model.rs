@@ -228,7 +228,8 @@ impl ModelCore {
         self.model.parameters().map(|(name, value)| (name.to_owned(), value)).collect()
     }
 
-    /// Names of the parameters and inputs that are numbers alone: they follow neither others nor a table, and no others follow them.
+    /// Names of the parameters and inputs that are numbers alone: they depend neither on others nor on a table, and no others depend
+    /// on them.
     fn numbers(&self) -> Vec<&str> {
         let values = self.model.parameter_values();
         let is_alone = |place: usize, value: f64| {

@@ -14,7 +14,7 @@ use crate::ffi::status::pc_status;
 use crate::machinery::mechanics::evaluate;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
-/// Writes the value at (t, y) of the Poisson bracket in coordinates and momenta, (12), of two
+/// Writes the value at (t, y) of the Poisson bracket (12), in coordinates and momenta, of two
 /// functions,
 ///
 ///   (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m,

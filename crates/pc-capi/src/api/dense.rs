@@ -44,9 +44,9 @@ pub unsafe extern "C" fn pc_solver_interpolate(
 }
 
 /// Integrates to the time t, which must differ from that of the solver, as pc_solver_advance
-/// does, and records the motion from the previous time of the solver: (order + 2) × dim numbers for
-/// each internal step. `dense` is also made when PC_EVENT or PC_STOPPED is returned; it then ends
-/// where the integration ended.
+/// does, and records the motion from the previous time of the solver on; this takes (order + 2) ×
+/// dim numbers for each internal step. `dense` is also made when PC_EVENT or PC_STOPPED is
+/// returned; it then ends where the integration ended.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_run_dense(
     solver: *mut pc_solver,

@@ -88,7 +88,7 @@ pub extern "C" fn pc_system_event_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.events.len())
 }
 
-/// The name of an event, from 0; NULL beyond the last.
+/// The name of an event, counted from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_event_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.event_names)
@@ -146,8 +146,8 @@ pub unsafe extern "C" fn pc_system_events(
     unsafe { inside(system, error, evaluate) }
 }
 
-/// Turns the state y before an event, number `event` from 0, into the state after it. An event
-/// without resets leaves y unchanged.
+/// Turns the state y before an event, number `event` counted from 0, into the state after it. An
+/// event without resets leaves y unchanged.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_event_reset(
     system: *const pc_system,

@@ -69,7 +69,8 @@ pub extern "C" fn pc_system_force_count(system: Option<&pc_system>) -> usize {
     system.map_or(0, |system| system.inventory.forces.len())
 }
 
-/// The name of the quasi-velocity on which an external force acts, from 0; NULL beyond the last.
+/// The name of the quasi-velocity on which an external force acts, counted from 0; NULL beyond the
+/// last.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_force_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     system.map_or(std::ptr::null(), |system| nth(&system.inventory.forces, index))

@@ -165,7 +165,7 @@ pub extern "C" fn pc_builtin_count() -> usize {
     Builtin::all().count()
 }
 
-/// The name of such a model, from 0; NULL beyond the last. Static.
+/// The name of a model that comes with the library, counted from 0; NULL beyond the last. Static.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_builtin_name(index: usize) -> *const c_char {
     static NAMES: OnceLock<Vec<CString>> = OnceLock::new();

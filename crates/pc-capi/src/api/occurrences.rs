@@ -141,7 +141,7 @@ pub extern "C" fn pc_solver_event_count(solver: Option<&pc_solver>) -> usize {
     solver.map_or(0, |solver| names(solver).len())
 }
 
-/// The name of an event, from 0; NULL beyond the last.
+/// The name of an event, counted from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_solver_event_name(solver: Option<&pc_solver>, index: usize) -> *const c_char {
     solver.map_or(std::ptr::null(), |solver| nth(&names(solver), index))

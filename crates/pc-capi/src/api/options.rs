@@ -155,7 +155,7 @@ pub enum pc_linear_solver {
     PC_LINEAR_DENSE = 1,
     /// Sparse LU factors.
     PC_LINEAR_SPARSE = 2,
-    /// GMRES without a matrix.
+    /// Matrix-free GMRES.
     PC_LINEAR_KRYLOV = 3,
 }
 
@@ -169,7 +169,7 @@ pub struct pc_solver_options {
     pub method: c_int,
     /// A pc_iteration; PC_ITERATION_OF_METHOD by default.
     pub iteration: c_int,
-    /// A pc_linear_solver; PC_LINEAR_AUTOMATIC by default. Only for Newton's iteration.
+    /// A pc_linear_solver; PC_LINEAR_AUTOMATIC by default. It matters only with Newton's iteration.
     pub linear_solver: c_int,
     /// Highest order of the method; 0, the default, for the highest it has.
     pub max_order: c_int,
@@ -186,9 +186,9 @@ pub struct pc_solver_options {
     /// Length of the first step, positive in both directions of time; 0, the default, for an
     /// estimate.
     pub initial_step: f64,
-    /// Least length of a step; 0, the default, for none.
+    /// Minimum length of a step; 0, the default, for none.
     pub min_step: f64,
-    /// Largest length of a step; 0, the default, for none.
+    /// Maximum length of a step; 0, the default, for none.
     pub max_step: f64,
     /// A time beyond which the equations are never evaluated; infinity, the default, for none.
     pub stop_time: f64,

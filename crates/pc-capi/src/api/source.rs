@@ -27,7 +27,7 @@ pub enum pc_format {
 
 /// Derives and prints the equations, as `pc derive` does: constraints, kinematics, brackets,
 /// equations, energy and reactions, or momenta and Hamiltonian, and the operations of one
-/// right-hand side. Where constraints are imposed by multipliers, it shows the equations in
+/// right-hand side. Where constraints are imposed by multipliers, the text shows the equations in
 /// independent velocities. `format` is a pc_format. Parameters have the values of the model. Free
 /// the text with pc_string_free.
 #[unsafe(no_mangle)]

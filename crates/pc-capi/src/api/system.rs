@@ -126,32 +126,32 @@ pub extern "C" fn pc_system_reaction_count(system: Option<&pc_system>) -> usize 
     count(system, |inventory| inventory.reactions.len())
 }
 
-/// The name of a component of the state, from 0; NULL beyond the last.
+/// The name of a component of the state, counted from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.names)
 }
 
-/// The name of a parameter, from 0; NULL beyond the last.
+/// The name of a parameter, counted from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_parameter_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.parameters)
 }
 
-/// The name of an observable, from 0; NULL beyond the last.
+/// The name of an observable, counted from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_observable_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.observables)
 }
 
-/// The name of a constraint that projection maintains, from 0; NULL beyond the last.
+/// The name of a constraint that projection maintains, counted from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_constraint_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.constraints)
 }
 
-/// The name of a reaction, `λ_` followed by the name of its constraint, from 0; NULL beyond the
-/// last.
+/// The name of a reaction, `λ_` followed by the name of its constraint, counted from 0; NULL beyond
+/// the last.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_reaction_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     let place = system.and_then(|system| system.inventory.reactions.get(index).copied());

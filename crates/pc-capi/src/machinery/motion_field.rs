@@ -42,7 +42,7 @@ impl MotionField {
         }
     }
 
-    /// The machine code of f, if f is nothing else.
+    /// The machine code of f, if f consists of machine code alone.
     pub(crate) fn machine_code(&mut self) -> Option<MachineCode> {
         match self {
             MotionField::Free(motion) => motion.machine_code(),

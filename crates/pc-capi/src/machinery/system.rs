@@ -187,13 +187,13 @@ impl pc_system {
         Ok(pc_system { inventory: Arc::clone(&self.inventory), direct, inner: Exclusive::new(inner) })
     }
 
-    /// The machine code of f, where f is known to be nothing else.
+    /// The machine code of f, if f is known to consist of machine code alone.
     #[inline]
     pub(crate) fn direct(&self) -> Option<&Direct> {
         self.direct.get()?.as_ref()
     }
 
-    /// Lets later evaluations use the machine code alone, where f is nothing else.
+    /// Lets later evaluations use the machine code directly, if f consists of machine code alone.
     pub(crate) fn prepare_direct(&self, inner: &mut Inner) {
         self.direct.get_or_init(|| Direct::of(&mut inner.field));
     }

@@ -300,7 +300,7 @@ class System(_native.System):
         samples_per_step, accumulation : optional
             How events are searched for, as in ``[simulation]``.
         sensitivities : sequence of str
-            Parameters with respect to which the motion is differentiated; they add columns ``∂x/∂p``.
+            Parameters with respect to which the motion is differentiated; the derivatives are further columns ``∂x/∂p``.
         estimate : bool
             Whether there are columns ``error(x)`` with the estimated global errors of the others: the distance from a second, more
             accurate motion.
@@ -317,8 +317,8 @@ class System(_native.System):
         Raises
         ------
         IntegrationError
-            If the integration cannot continue, or the motion has lost an integral that it is proved to keep; its ``motion`` is
-            the part that was computed.
+            If the integration cannot continue, or if the motion has failed to conserve an integral that is proved to be conserved; its
+            ``motion`` is the part that was computed.
         DisagreementError
             If the second derivation gives a different motion.
 
@@ -485,7 +485,7 @@ class System(_native.System):
         interval : float
             The time after which tangent vectors are made orthonormal again.
         intervals, transient : int
-            How many intervals are counted, and how many before these are skipped.
+            The number of intervals that are counted, and the number that are skipped before them.
         **settings
             ``method``, ``rtol``, ``atol``, ``max_step``, … as for :meth:`run`.
         """

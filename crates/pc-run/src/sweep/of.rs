@@ -25,7 +25,7 @@ impl SweepOf {
         }
     }
 
-    /// The one with this name.
+    /// The computation with this name.
     pub(crate) fn of_word(word: &str) -> Option<SweepOf> {
         SweepOf::ALL.into_iter().find(|of| of.word() == word)
     }

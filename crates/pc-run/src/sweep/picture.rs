@@ -64,7 +64,7 @@ fn chosen(sheet: &SweepColumns, wanted: &[String]) -> Result<Vec<usize>, SweepPl
     wanted.iter().map(place).collect()
 }
 
-/// Whether number `j` in a row is its time.
+/// Whether number `j` in a row is the time of the row.
 fn is_time(sheet: &SweepColumns, j: usize) -> bool {
     sheet.of() == SweepOf::Run && j == 0
 }

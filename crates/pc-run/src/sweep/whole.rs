@@ -240,7 +240,7 @@ impl Sweep {
         Ok(Swept { before, tally: journal.tally().clone(), wall: start.elapsed() })
     }
 
-    /// Passes the records of the members of a shard at these places to `take`, in order, until it breaks.
+    /// Passes the records of the members of a shard at these places to `take`, in order, until `take` breaks.
     fn each(
         &self,
         shard: Shard,
