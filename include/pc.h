@@ -212,7 +212,7 @@ typedef enum {
   /**
    * Taylor's method of adaptive order and step, for systems that are not stiff: the fastest at
    * tolerances of 1e-8 and below, and the one that follows a motion to within rounding errors.
-   * It needs equations that are solved in expressions, without tables and without forces from
+   * It needs equations that are solved symbolically, without tables and without forces from
    * functions of the program.
    */
   PC_TAYLOR = 3,
@@ -373,7 +373,7 @@ typedef struct {
   double time_limit;
   /**
    * The handle with which derivations and integrations can be ended; NULL, the default, for
-   * none. It may be freed when pc_system_new has returned.
+   * none. The handle may be freed when pc_system_new has returned.
    */
   const pc_cancel *cancel;
 } pc_system_options;
@@ -486,8 +486,8 @@ typedef int (*pc_force_jacobian)(double t,
                                  void *user);
 
 /**
- * Frees the data to which the `user` of a function points. It must return: no exceptions, no
- * longjmp.
+ * Frees the data to which the `user` of a function points. It must return normally: no exceptions,
+ * no longjmp.
  */
 typedef void (*pc_destroy)(void *user);
 
@@ -824,8 +824,8 @@ pc_status pc_model_add_parameter(pc_model *model,
                                  pc_error **error);
 
 /**
- * Adds a parameter that is an expression in the parameters before it. It changes with them until
- * it is itself set.
+ * Adds a parameter that is an expression in the parameters before it. The new parameter changes
+ * with them until it is itself set.
  */
 pc_status pc_model_add_parameter_expression(pc_model *model,
                                             const char *name,
@@ -834,8 +834,8 @@ pc_status pc_model_add_parameter_expression(pc_model *model,
 
 /**
  * Adds a first-order state with its value at the start and its rate, which is an expression in
- * time, coordinates, velocities and states. It is integrated with the motion and comes after the
- * velocities in the state; it is not part of the frame.
+ * time, coordinates, velocities and states. The first-order state is integrated with the motion
+ * and comes after the velocities in the state; it is not part of the frame.
  */
 pc_status pc_model_add_state(pc_model *model,
                              const char *name,
@@ -883,8 +883,8 @@ pc_status pc_model_add_quasi_velocity(pc_model *model,
                                       pc_error **error);
 
 /**
- * Sets the velocity of a coordinate as an expression affine in the quasi-velocities, (3). Call it
- * for every coordinate, or for none.
+ * Sets the velocity of a coordinate as an expression affine in the quasi-velocities, (3). Call
+ * this function for every coordinate, or for none.
  */
 pc_status pc_model_set_kinematics(pc_model *model,
                                   const char *coordinate,
@@ -1267,8 +1267,8 @@ pc_status pc_model_set_constraint_kind(pc_model *model,
 pc_status pc_model_set_start_time(pc_model *model, double t, pc_error **error);
 
 /**
- * Sets the time until which the program `pc` runs the model. It is written to the text, as are the
- * settings of the next five functions; solvers take pc_solver_options instead.
+ * Sets the time until which the program `pc` runs the model. This time is written to the text, as
+ * are the settings of the next five functions; solvers take pc_solver_options instead.
  */
 pc_status pc_model_set_end_time(pc_model *model, double t, pc_error **error);
 
@@ -1509,9 +1509,9 @@ pc_status pc_system_find_observable(const pc_system *system,
 
 /**
  * Declares that a force computed by a function of yours acts on a quasi-velocity, or on a
- * coordinate if the model declares no quasi-velocities. It is added to the other forces that act
- * there. The function belongs to the system, not to the model: set it with pc_system_set_force. An
- * unknown name is reported by pc_model_check and pc_system_new.
+ * coordinate if the model declares no quasi-velocities. This force is added to the other forces
+ * that act there. The function belongs to the system, not to the model: set it with
+ * pc_system_set_force. An unknown name is reported by pc_model_check and pc_system_new.
  */
 pc_status pc_model_add_external_force(pc_model *model, const char *on, pc_error **error);
 
@@ -1539,7 +1539,7 @@ const char *pc_system_force_name(const pc_system *system, size_t index);
  * (pc_system_..._name) and sizes.
  *
  * `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else
- * when the last handle that shares it is freed or given another function. It must not use a
+ * when the last handle that shares it is freed or given another function. `destroy` must not use a
  * handle that is being freed.
  */
 pc_status pc_system_set_force(pc_system *system,
@@ -1553,8 +1553,8 @@ pc_status pc_system_set_force(pc_system *system,
  * Adds a quasi-velocity to those of the model, for systems of the form PC_HAMEL: a linear
  * form in the velocities x' or the quasi-velocities of the model, such as "r*f'". Where fewer are
  * given than there are independent quasi-velocities, the missing ones are taken from those of the
- * model. Each is also an output. Errors in its definition are reported by pc_model_check and
- * pc_system_new.
+ * model. Each added quasi-velocity is also an output. Errors in its definition are reported by
+ * pc_model_check and pc_system_new.
  */
 pc_status pc_model_give_quasi_velocity(pc_model *model,
                                        const char *name,
@@ -1563,7 +1563,7 @@ pc_status pc_model_give_quasi_velocity(pc_model *model,
 
 /**
  * Chooses a velocity as independent; there must be as many choices as there are velocities that
- * the constraints leave free. Where multipliers would impose the constraints, systems then have
+ * the constraints leave free. Systems in which multipliers would impose the constraints then have
  * equations without multipliers. The name is that of a quasi-velocity, or x' where there are none.
  * Without such choices, printed equations and source use the velocities that make them shortest. A
  * wrong choice is reported by pc_system_new.
@@ -1690,8 +1690,8 @@ pc_status pc_system_keep_from(pc_system *system,
  * Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the
  * energy, the outputs.
  *
- * Where an observable has no value, the number is not finite; the same holds for an observable
- * that contains accelerations where external forces cannot be computed.
+ * Where an observable has no value, its entry is not a finite number; the same holds for an
+ * observable that contains accelerations where external forces cannot be computed.
  */
 pc_status pc_system_observe(const pc_system *system,
                             double t,
@@ -2152,9 +2152,10 @@ pc_status pc_solver_observe_events(pc_solver *solver,
                                    pc_error **error);
 
 /**
- * The same, with a `user` that the solver owns. `destroy`, unless NULL, is called with `user`
- * exactly once: by this call if it fails or `observer` is NULL, else when another observer takes
- * its place or the solver is freed. It must not use the solver while the solver is being freed.
+ * The same as pc_solver_observe_events, with a `user` that the solver owns. `destroy`, unless
+ * NULL, is called with `user` exactly once: by this call if it fails or `observer` is NULL, else
+ * when another observer takes its place or the solver is freed. `destroy` must not use the solver
+ * while the solver is being freed.
  */
 pc_status pc_solver_set_event_observer(pc_solver *solver,
                                        pc_event_observer observer,
@@ -2170,7 +2171,7 @@ pc_status pc_solver_set_event_observer(pc_solver *solver,
  * first step. `name` is for messages.
  *
  * `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else by
- * pc_solver_free. It must not use the solver.
+ * pc_solver_free. `destroy` must not use the solver.
  */
 pc_status pc_solver_add_event(pc_solver *solver,
                               const char *name,

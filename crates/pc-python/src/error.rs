@@ -20,7 +20,7 @@ use pyo3::types::PyType;
 
 use crate::notation::in_python;
 
-/// What can go wrong below Python.
+/// The errors that can occur below Python.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
     #[error(transparent)]

@@ -103,7 +103,8 @@ fn absolute(given: AbsoluteTolerance) -> GivenTolerance {
     }
 }
 
-/// Compares equations with a second derivation before they are returned. It is not an error if there can be none: `check` says why.
+/// Compares equations with a second derivation before they are returned. It is not an error if there can be no second derivation:
+/// `check` says why.
 ///
 /// # Errors
 /// [`Error::Verify`] if the derivations disagree.

@@ -143,7 +143,7 @@ impl RunError {
         }
     }
 
-    /// What may help, if anything is known.
+    /// Advice that may help, if there is any.
     pub fn help(&self) -> Vec<String> {
         let mut help = Vec::new();
         if let RunError::Lost(_) = self {

@@ -82,8 +82,8 @@ pub unsafe extern "C" fn pc_model_add_parameter(
     unsafe { draft(model, error, "pc_model_add_parameter", write) }
 }
 
-/// Adds a parameter that is an expression in the parameters before it. It changes with them until
-/// it is itself set.
+/// Adds a parameter that is an expression in the parameters before it. The new parameter changes
+/// with them until it is itself set.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_parameter_expression(
     model: *mut pc_model,
@@ -102,8 +102,8 @@ pub unsafe extern "C" fn pc_model_add_parameter_expression(
 }
 
 /// Adds a first-order state with its value at the start and its rate, which is an expression in
-/// time, coordinates, velocities and states. It is integrated with the motion and comes after the
-/// velocities in the state; it is not part of the frame.
+/// time, coordinates, velocities and states. The first-order state is integrated with the motion
+/// and comes after the velocities in the state; it is not part of the frame.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_state(
     model: *mut pc_model,
@@ -210,8 +210,8 @@ pub unsafe extern "C" fn pc_model_add_quasi_velocity(
     unsafe { draft(model, error, "pc_model_add_quasi_velocity", write) }
 }
 
-/// Sets the velocity of a coordinate as an expression affine in the quasi-velocities, (3). Call it
-/// for every coordinate, or for none.
+/// Sets the velocity of a coordinate as an expression affine in the quasi-velocities, (3). Call
+/// this function for every coordinate, or for none.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_kinematics(
     model: *mut pc_model,

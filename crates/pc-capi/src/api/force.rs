@@ -45,9 +45,9 @@ pub type pc_force_jacobian = Option<
 >;
 
 /// Declares that a force computed by a function of yours acts on a quasi-velocity, or on a
-/// coordinate if the model declares no quasi-velocities. It is added to the other forces that act
-/// there. The function belongs to the system, not to the model: set it with pc_system_set_force. An
-/// unknown name is reported by pc_model_check and pc_system_new.
+/// coordinate if the model declares no quasi-velocities. This force is added to the other forces
+/// that act there. The function belongs to the system, not to the model: set it with
+/// pc_system_set_force. An unknown name is reported by pc_model_check and pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_external_force(
     model: *mut pc_model,
@@ -88,7 +88,7 @@ pub extern "C" fn pc_system_force_name(system: Option<&pc_system>, index: usize)
 /// (pc_system_..._name) and sizes.
 ///
 /// `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else
-/// when the last handle that shares it is freed or given another function. It must not use a
+/// when the last handle that shares it is freed or given another function. `destroy` must not use a
 /// handle that is being freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_set_force(

@@ -9,8 +9,8 @@ use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 /// Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the
 /// energy, the outputs.
 ///
-/// Where an observable has no value, the number is not finite; the same holds for an observable
-/// that contains accelerations where external forces cannot be computed.
+/// Where an observable has no value, its entry is not a finite number; the same holds for an
+/// observable that contains accelerations where external forces cannot be computed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_observe(
     system: *const pc_system,

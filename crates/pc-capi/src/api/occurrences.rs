@@ -59,9 +59,10 @@ pub unsafe extern "C" fn pc_solver_observe_events(
     unsafe { observe(solver, observer, User { data: user, destroy: None }, error) }
 }
 
-/// The same, with a `user` that the solver owns. `destroy`, unless NULL, is called with `user`
-/// exactly once: by this call if it fails or `observer` is NULL, else when another observer takes
-/// its place or the solver is freed. It must not use the solver while the solver is being freed.
+/// The same as pc_solver_observe_events, with a `user` that the solver owns. `destroy`, unless
+/// NULL, is called with `user` exactly once: by this call if it fails or `observer` is NULL, else
+/// when another observer takes its place or the solver is freed. `destroy` must not use the solver
+/// while the solver is being freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_set_event_observer(
     solver: *mut pc_solver,
@@ -101,7 +102,7 @@ unsafe fn observe(
 /// first step. `name` is for messages.
 ///
 /// `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else by
-/// pc_solver_free. It must not use the solver.
+/// pc_solver_free. `destroy` must not use the solver.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_add_event(
     solver: *mut pc_solver,

@@ -51,7 +51,7 @@ pub struct pc_system_options {
     /// ensemble of the system; 0, the default, for no limit.
     pub time_limit: f64,
     /// The handle with which derivations and integrations can be ended; NULL, the default, for
-    /// none. It may be freed when pc_system_new has returned.
+    /// none. The handle may be freed when pc_system_new has returned.
     pub cancel: *const pc_cancel,
 }
 
@@ -125,7 +125,7 @@ pub enum pc_method {
     PC_DOP853 = 2,
     /// Taylor's method of adaptive order and step, for systems that are not stiff: the fastest at
     /// tolerances of 1e-8 and below, and the one that follows a motion to within rounding errors.
-    /// It needs equations that are solved in expressions, without tables and without forces from
+    /// It needs equations that are solved symbolically, without tables and without forces from
     /// functions of the program.
     PC_TAYLOR = 3,
     /// PC_DOP853 where the motion is not stiff, PC_BDF where stiffness is detected. With

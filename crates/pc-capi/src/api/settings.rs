@@ -103,8 +103,8 @@ pub unsafe extern "C" fn pc_model_set_start_time(
     unsafe { set_number(model, error, "pc_model_set_start_time", &[("t_start", t)]) }
 }
 
-/// Sets the time until which the program `pc` runs the model. It is written to the text, as are the
-/// settings of the next five functions; solvers take pc_solver_options instead.
+/// Sets the time until which the program `pc` runs the model. This time is written to the text, as
+/// are the settings of the next five functions; solvers take pc_solver_options instead.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_end_time(
     model: *mut pc_model,

@@ -27,7 +27,7 @@ impl Compared {
     ///
     /// # Errors
     /// [`CompareError`] if there is nothing to compare, and any error of a run. It is not an error if a
-    /// motion fails: it is compared as far as it goes.
+    /// motion fails: the motion is compared as far as it goes.
     pub fn of(
         models: [&Model; 2],
         wishes: [&Wishes; 2],

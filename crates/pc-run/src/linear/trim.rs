@@ -15,7 +15,7 @@ use crate::observer::Observer;
 #[derive(Debug)]
 pub struct Trimmed {
     title: String,
-    /// What was found.
+    /// The state of rest or steady motion that was found.
     pub trim: Trim,
 }
 

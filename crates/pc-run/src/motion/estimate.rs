@@ -21,7 +21,7 @@ const TOLERANCES: f64 = 10.0;
 pub struct Estimate {
     /// The integration method of the companion.
     pub method: Method,
-    /// Its relative tolerance.
+    /// The relative tolerance of the companion.
     pub rtol: f64,
     /// The number of rows whose errors are known.
     pub rows: usize,

@@ -101,9 +101,8 @@ impl Run {
         integrated((model, &model.assemble(&graph)?), plan.form, || Ok(plan), besides, None, observer)
     }
 
-    /// As [`of`](Run::of), for equations that have been derived, with the values of the model. They are
-    /// derived again only if they are to be verified, or if a lost integral or lost inertia has to be
-    /// explained.
+    /// As [`of`](Run::of), but for equations that have been derived before, with the values of the model. The equations
+    /// are derived again only if they are to be verified, or if a lost integral or lost inertia has to be explained.
     ///
     /// # Errors
     /// As for [`of`](Run::of).

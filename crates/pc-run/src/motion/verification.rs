@@ -46,7 +46,7 @@ pub fn vouched(
     Ok(())
 }
 
-/// As [`vouched`], but returns the reason if the equations could not be compared.
+/// Does the same as [`vouched`], but returns the reason if the equations could not be compared.
 ///
 /// # Errors
 /// [`RunError::Verify`] if the derivations disagree.

@@ -47,7 +47,7 @@ pub enum SweepError {
     OtherSweep {
         /// The journal.
         journal: PathBuf,
-        /// What is different now, with the value then and now.
+        /// What has changed, with its former and its present value.
         what: String,
     },
     /// The journal cannot be read or written.

@@ -6,7 +6,7 @@ pub enum SweepOf {
     /// Its motion.
     #[default]
     Run,
-    /// Its eigenvalues at a state near its start.
+    /// The eigenvalues of the member at a state near its start.
     Linearize,
     /// Its properties.
     Check,

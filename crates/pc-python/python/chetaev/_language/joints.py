@@ -29,7 +29,7 @@ class Joint:
     coordinates: Sequence[str] | None = None
     quasi_velocities: Sequence[str] | None = None
 
-    #: Its name in a text.
+    #: The name of the kind of joint in a text.
     kind: ClassVar[str]
 
     def entries(self) -> dict[str, Any]:

@@ -198,7 +198,7 @@ class Equilibrium(NamedTuple):
     stability: str
     #: The dimension of the family of equilibria to which the state belongs; 0 if the state is isolated.
     family: int
-    #: How many equilibria of that family were found.
+    #: How many equilibria of the family were found.
     members: int
 
 
