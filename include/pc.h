@@ -1141,8 +1141,9 @@ pc_status pc_model_set_joint_rotation(pc_model *model,
                                       pc_error **error);
 
 /**
- * Sets the same rotation as a sequence of turns about axes: `axes` has a letter x, y or z for each
- * of the `length` angles; each turn is about an axis as moved by the turns before it.
+ * Sets the rotation of pc_model_set_joint_rotation as a sequence of turns about axes: `axes` has a
+ * letter x, y or z for each of the `length` angles; each turn is about an axis as moved by the
+ * turns before it.
  */
 pc_status pc_model_set_joint_turns(pc_model *model,
                                    const char *body,
@@ -1563,8 +1564,8 @@ pc_status pc_model_give_quasi_velocity(pc_model *model,
 
 /**
  * Chooses a velocity as independent; there must be as many choices as there are velocities that
- * the constraints leave free. Systems in which multipliers would impose the constraints then have
- * equations without multipliers. The name is that of a quasi-velocity, or x' where there are none.
+ * the constraints leave free. Systems whose equations would otherwise contain multipliers then
+ * have equations without them. The name is that of a quasi-velocity, or x' where there are none.
  * Without such choices, printed equations and source use the velocities that make them shortest. A
  * wrong choice is reported by pc_system_new.
  */
@@ -1884,9 +1885,9 @@ pc_status pc_system_structure_coefficients(const pc_system *system,
 
 /**
  * Writes the residual of the equations for ydot in the form expected by codes for implicit
- * equations F(t, y, ẏ) = 0: ẋ − b η − b_0, then M η̇ − r, without dividing by M. With multipliers,
- * whose reactions are eliminated, the second part is M times the error of η̇; in the canonical
- * form the residual is ẏ − f. The first call derives equations, as pc_system_new does.
+ * equations F(t, y, ẏ) = 0: ẋ − b η − b_0, then M η̇ − r, without dividing by M. If there are
+ * multipliers, whose reactions are eliminated, the second part is M times the error of η̇; in the
+ * canonical form the residual is ẏ − f. The first call derives equations, as pc_system_new does.
  */
 pc_status pc_system_residual(const pc_system *system,
                              double t,
@@ -2053,8 +2054,8 @@ int pc_kernel_jacobian(double t,
 /**
  * Writes f(t, y) for `count` states, which are given one after the other in `states`, to `rates`,
  * in the same order. Otherwise it is like pc_kernel_rhs: it returns 1 if f cannot be evaluated at
- * some states, whose rates are then NaN; −1 at a state where no step helps, and the rates of the
- * states after it are not written.
+ * some states, whose rates are then NaN; it returns −1 at a state where no step helps, and does
+ * not write the rates of the states after it.
  */
 int pc_kernel_rhs_many(double t, const double *states, size_t count, double *rates, void *kernel);
 

@@ -151,8 +151,9 @@ pub unsafe extern "C" fn pc_model_set_joint_rotation(
     unsafe { draft(model, error, "pc_model_set_joint_rotation", write) }
 }
 
-/// Sets the same rotation as a sequence of turns about axes: `axes` has a letter x, y or z for each
-/// of the `length` angles; each turn is about an axis as moved by the turns before it.
+/// Sets the rotation of pc_model_set_joint_rotation as a sequence of turns about axes: `axes` has a
+/// letter x, y or z for each of the `length` angles; each turn is about an axis as moved by the
+/// turns before it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_joint_turns(
     model: *mut pc_model,

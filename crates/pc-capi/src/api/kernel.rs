@@ -132,8 +132,8 @@ pub unsafe extern "C" fn pc_kernel_jacobian(
 
 /// Writes f(t, y) for `count` states, which are given one after the other in `states`, to `rates`,
 /// in the same order. Otherwise it is like pc_kernel_rhs: it returns 1 if f cannot be evaluated at
-/// some states, whose rates are then NaN; −1 at a state where no step helps, and the rates of the
-/// states after it are not written.
+/// some states, whose rates are then NaN; it returns −1 at a state where no step helps, and does
+/// not write the rates of the states after it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_kernel_rhs_many(
     t: f64,

@@ -192,9 +192,9 @@ pub unsafe extern "C" fn pc_system_structure_coefficients(
 }
 
 /// Writes the residual of the equations for ydot in the form expected by codes for implicit
-/// equations F(t, y, ẏ) = 0: ẋ − b η − b_0, then M η̇ − r, without dividing by M. With multipliers,
-/// whose reactions are eliminated, the second part is M times the error of η̇; in the canonical
-/// form the residual is ẏ − f. The first call derives equations, as pc_system_new does.
+/// equations F(t, y, ẏ) = 0: ẋ − b η − b_0, then M η̇ − r, without dividing by M. If there are
+/// multipliers, whose reactions are eliminated, the second part is M times the error of η̇; in the
+/// canonical form the residual is ẏ − f. The first call derives equations, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_residual(
     system: *const pc_system,

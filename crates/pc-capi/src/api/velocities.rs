@@ -30,8 +30,8 @@ pub unsafe extern "C" fn pc_model_give_quasi_velocity(
 }
 
 /// Chooses a velocity as independent; there must be as many choices as there are velocities that
-/// the constraints leave free. Systems in which multipliers would impose the constraints then have
-/// equations without multipliers. The name is that of a quasi-velocity, or x' where there are none.
+/// the constraints leave free. Systems whose equations would otherwise contain multipliers then
+/// have equations without them. The name is that of a quasi-velocity, or x' where there are none.
 /// Without such choices, printed equations and source use the velocities that make them shortest. A
 /// wrong choice is reported by pc_system_new.
 #[unsafe(no_mangle)]

@@ -268,8 +268,8 @@ class System(_native.System):
     ) -> Motion:
         """Integrates the motion from the start.
 
-        What is not given comes from the text, or else from the defaults of ``pc run``: the numbers equal those of that program
-        bit for bit. Ctrl-C ends the integration.
+        What is not given comes from the text, or else from the defaults of ``pc run``: the numbers equal those of ``pc run`` bit for
+        bit. Ctrl-C ends the integration.
 
         Parameters
         ----------

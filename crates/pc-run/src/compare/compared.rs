@@ -21,7 +21,7 @@ pub struct Compared {
 }
 
 impl Compared {
-    /// Integrates the motions of two models, and compares them at the times of the first. Where they differ,
+    /// Integrates the motions of two models, and compares them at the times of the first. Where the motions differ,
     /// both are integrated once more at smaller tolerances, to distinguish different motions from errors of
     /// integration.
     ///

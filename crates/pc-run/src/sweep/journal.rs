@@ -45,7 +45,7 @@ pub trait Records {
     fn kept(&self) -> Option<&Path>;
 }
 
-/// How many members ended in each way.
+/// How many members ended in each of the possible ways.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     /// The number of members that are finished.
@@ -219,7 +219,7 @@ impl Journal {
         &self.path
     }
 
-    /// How many members ended in each way.
+    /// How many members ended in each of the possible ways.
     pub fn tally(&self) -> &Tally {
         &self.tally
     }

@@ -74,7 +74,7 @@ pub struct Sweep {
 /// The members of a sweep that were computed.
 #[derive(Clone, Debug)]
 pub struct Swept {
-    /// How many members were finished before.
+    /// How many members were finished before this run.
     pub before: u64,
     /// How many of all members ended in each way.
     pub tally: Tally,
