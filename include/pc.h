@@ -178,7 +178,7 @@ typedef enum {
    */
   PC_REDUCED = 2,
   /**
-   * The same in momenta: Lie–Poisson equations.
+   * The same equations in momenta: Lie–Poisson equations.
    */
   PC_LIE_POISSON = 3,
   /**
@@ -206,13 +206,13 @@ typedef enum {
   /**
    * The explicit Runge–Kutta method of order 8 of Dormand and Prince, for systems that are
    * not stiff at tolerances of 1e-6 and below: the fastest where the equations are short. It has
-   * no sensitivities, and no iteration, linear solver or highest order to choose.
+   * no sensitivities, and offers no choice of iteration, linear solver or highest order.
    */
   PC_DOP853 = 2,
   /**
    * Taylor's method of adaptive order and step, for systems that are not stiff: the fastest at
    * tolerances of 1e-8 and below, and the one that follows a motion to within rounding errors.
-   * It needs equations that are solved in expressions, without tables and without forces from
+   * It needs equations that are solved symbolically, without tables and without forces from
    * functions of the program.
    */
   PC_TAYLOR = 3,
@@ -260,7 +260,7 @@ typedef enum {
    */
   PC_LINEAR_SPARSE = 2,
   /**
-   * GMRES without a matrix.
+   * Matrix-free GMRES.
    */
   PC_LINEAR_KRYLOV = 3,
 } pc_linear_solver;
@@ -302,15 +302,15 @@ typedef enum {
 } pc_direction;
 
 /**
- * A handle that ends the derivations of systems whose pc_system_options contain it, and
- * integrations of these systems. Any number of threads may use it at the same time. Free it
- * with pc_cancel_free.
+ * A handle that ends the derivations of systems whose pc_system_options contain it, and the
+ * integrations of these systems. Any number of threads may use it at the same time. Free it with
+ * pc_cancel_free.
  */
 typedef struct pc_cancel pc_cancel;
 
 /**
- * A motion as a function of time. It never changes, so that any number of threads may use it.
- * Free it with pc_dense_free.
+ * A motion as a function of time. It never changes, so any number of threads may use it. Free it
+ * with pc_dense_free.
  */
 typedef struct pc_dense pc_dense;
 
@@ -324,7 +324,7 @@ typedef struct pc_error pc_error;
  * f(t, y) for an integrator of your own: the context of pc_kernel_rhs and pc_kernel_jacobian.
  * Free it with pc_kernel_free.
  *
- * It holds workspace, so each thread needs its own, and two calls at the same time are not
+ * It holds workspace, so each thread needs its own kernel, and two calls at the same time are not
  * safe; in return it takes no locks.
  */
 typedef struct pc_kernel pc_kernel;
@@ -361,9 +361,9 @@ typedef struct {
    */
   int reserved;
   /**
-   * Maximum number of bytes that the expressions of a derivation may take, by estimate; 0, the
+   * Maximum number of bytes, by estimate, that the expressions of a derivation may take; 0, the
    * default, for 4 GiB. Beyond it a call returns PC_LIMIT. The limit applies separately to
-   * pc_system_new and to each later call that derives; so do the next two.
+   * pc_system_new and to each later call that derives; so do the next two fields.
    */
   uint64_t memory_limit;
   /**
@@ -373,7 +373,7 @@ typedef struct {
   double time_limit;
   /**
    * The handle with which derivations and integrations can be ended; NULL, the default, for
-   * none. It may be freed when pc_system_new has returned.
+   * none. The handle may be freed when pc_system_new has returned.
    */
   const pc_cancel *cancel;
 } pc_system_options;
@@ -395,7 +395,7 @@ typedef struct {
    */
   int iteration;
   /**
-   * A pc_linear_solver; PC_LINEAR_AUTOMATIC by default. Only for Newton's iteration.
+   * A pc_linear_solver; PC_LINEAR_AUTOMATIC by default. It matters only with Newton's iteration.
    */
   int linear_solver;
   /**
@@ -407,7 +407,7 @@ typedef struct {
    */
   double relative_tolerance;
   /**
-   * Absolute tolerance of all components, positive; 1e-12 by default.
+   * Absolute tolerance for all components, positive; 1e-12 by default.
    */
   double absolute_tolerance;
   /**
@@ -428,11 +428,11 @@ typedef struct {
    */
   double initial_step;
   /**
-   * Least length of a step; 0, the default, for none.
+   * Minimum length of a step; 0, the default, for none.
    */
   double min_step;
   /**
-   * Largest length of a step; 0, the default, for none.
+   * Maximum length of a step; 0, the default, for none.
    */
   double max_step;
   /**
@@ -440,11 +440,10 @@ typedef struct {
    */
   double stop_time;
   /**
-   * Number of equal parts of each step, at least 1, at whose ends the functions of events are
-   * sampled that are not expressions in the state alone (those of your program, and those that
-   * are read through constraints, momenta or tables); they are sampled more closely where the
-   * values leave doubt; 4 by default. Between two such times an even number of zeros may be
-   * missed.
+   * Number of equal parts of each step, at least 1; 4 by default. Functions of events that are
+   * not expressions in the state alone (those of your program, and those that are read through
+   * constraints, momenta or tables) are sampled at the ends of the parts, and more closely where
+   * the values leave doubt. Between two such times an even number of zeros may be missed.
    */
   uint32_t samples_per_step;
   /**
@@ -460,11 +459,12 @@ typedef struct {
 } pc_solver_options;
 
 /**
- * Writes the external forces at (t, y) to q: one for each that was declared, in that order, so
- * `q_length` is pc_system_force_count. y is the state of the system; in the canonical form it
- * contains momenta. Returns 0; a positive number where the forces are not defined, so that a
- * smaller step may help; a negative number to give up. A force left unwritten is NaN, and treated
- * like a positive return value. It must return: no exceptions, no longjmp.
+ * Writes the external forces at (t, y) to q: one for each that was declared, in the order of the
+ * declarations, so `q_length` is pc_system_force_count. y is the state of the system; in the
+ * canonical form it contains momenta. Returns 0 on success; a positive number where the forces are
+ * not defined, so that a smaller step may help; a negative number to give up. A force left
+ * unwritten is NaN and is treated like a positive return value. It must return normally: no
+ * exceptions, no longjmp.
  */
 typedef int (*pc_force_function)(double t,
                                  const double *y,
@@ -475,7 +475,7 @@ typedef int (*pc_force_function)(double t,
 
 /**
  * Writes the derivatives of the external forces at (t, y), all of them, column-major: ∂q_i/∂y_j
- * to `dq[i + j*e]` for e forces, so `dq_length` is e * `y_length`. Otherwise as
+ * to `dq[i + j*e]` for e forces, so `dq_length` is e * `y_length`. Otherwise it is like
  * pc_force_function.
  */
 typedef int (*pc_force_jacobian)(double t,
@@ -486,24 +486,24 @@ typedef int (*pc_force_jacobian)(double t,
                                  void *user);
 
 /**
- * Frees the data to which the `user` of a function points. It must return: no exceptions, no
- * longjmp.
+ * Frees the data to which the `user` of a function points. It must return normally: no exceptions,
+ * no longjmp.
  */
 typedef void (*pc_destroy)(void *user);
 
 /**
  * Receives the state at each output time. Returns 0 to continue; anything else ends the run
- * with PC_STOPPED. It may call any function on other handles, and must return: no exceptions,
- * no longjmp.
+ * with PC_STOPPED. It may call any function on other handles, and must return normally: no
+ * exceptions, no longjmp.
  */
 typedef int (*pc_observer)(double t, const double *y, size_t y_length, void *user);
 
 /**
  * Receives each event where it occurs, by its number among the events of the solver, with the
- * states before and after it, which are valid during the call. Among simultaneous events each has
- * the state that it found and the state that it left. Returns 0 to continue; anything else ends
- * the call with PC_STOPPED, or with PC_EVENT where the event is terminal. Otherwise as
- * pc_observer.
+ * states before and after it, which are valid during the call. Each of several simultaneous events
+ * is given with the state that it found and the state that it left. Returns 0 to continue;
+ * anything else ends the call with PC_STOPPED, or with PC_EVENT where the event is terminal.
+ * Otherwise it is like pc_observer.
  */
 typedef int (*pc_event_observer)(size_t event,
                                  double t,
@@ -515,8 +515,8 @@ typedef int (*pc_event_observer)(size_t event,
 /**
  * Writes g(t, y), which passes through zero where the event occurs. Returns 0; anything else
  * ends the integration with PC_INTEGRATION, as does a value that is not finite or not
- * written. It should depend only on its arguments and be smooth. It must return: no exceptions, no
- * longjmp.
+ * written. It should depend only on its arguments and be smooth. It must return normally: no
+ * exceptions, no longjmp.
  */
 typedef int (*pc_event_function)(double t,
                                  const double *y,
@@ -525,12 +525,13 @@ typedef int (*pc_event_function)(double t,
                                  void *user);
 
 /**
- * Turns the state y before the event into the state after it. Otherwise as pc_event_function.
+ * Turns the state y before the event into the state after it. Otherwise it is like
+ * pc_event_function.
  */
 typedef int (*pc_event_reset)(double t, double *y, size_t y_length, void *user);
 
 /**
- * Counters since the start of an integration, and data of its last internal step. The structure
+ * Counters since the start of an integration, and data on its last internal step. The structure
  * may grow at the end.
  */
 typedef struct {
@@ -559,7 +560,7 @@ typedef struct {
    */
   uint64_t nonlinear_failures;
   /**
-   * Factorisations, or renewals of the preconditioner.
+   * Factorisations, or updates of the preconditioner.
    */
   uint64_t linear_setups;
   /**
@@ -583,8 +584,8 @@ typedef struct {
    */
   double step_time;
   /**
-   * Steps shortened to end where the explicit dependence on time shows something that the
-   * motion so far gives no hint of: the beginning of a pulse, a jump.
+   * Steps shortened to end where the equations, as explicit functions of time, change in a way
+   * of which the motion so far gives no hint, as at a jump or at the beginning of a pulse.
    */
   uint64_t limited_steps;
   /**
@@ -592,7 +593,7 @@ typedef struct {
    */
   uint64_t implicit_steps;
   /**
-   * How often PC_AUTO changed its method.
+   * How often PC_AUTO switched between its methods.
    */
   uint64_t changes;
   /**
@@ -606,15 +607,15 @@ typedef struct {
  */
 typedef struct {
   /**
-   * Its number, from 0.
+   * The number of the member, counted from 0.
    */
   size_t number;
   /**
-   * PC_OK; PC_EVENT if a terminal event ended it; else why it failed.
+   * PC_OK, PC_EVENT if a terminal event ended the motion, or the status of the failure.
    */
   pc_status status;
   /**
-   * Why it failed, else NULL.
+   * Why the member failed; NULL if it did not.
    */
   const char *message;
   /**
@@ -623,12 +624,12 @@ typedef struct {
    */
   const double *times;
   /**
-   * The states at these times, one after the other, each of `dim` numbers. Like `times`,
+   * The states at these times, one after the other, each of `dim` numbers. Like `times`, it is
    * NULL where there are none.
    */
   const double *states;
   /**
-   * The number of these times and states, also if the member failed.
+   * The number of these times and states, even if the member failed.
    */
   size_t rows;
   /**
@@ -640,12 +641,12 @@ typedef struct {
 /**
  * Receives each member in order, on the thread of the call; the data to which `member` points are
  * valid during the call. Returns 0 to continue; anything else ends the ensemble with PC_STOPPED.
- * Otherwise as pc_observer.
+ * Otherwise it is like pc_observer.
  */
 typedef int (*pc_member_observer)(const pc_member *member, void *user);
 
 /**
- * The version of the library, such as "0.1.0". Static.
+ * The version of the library, such as "0.1.0". The text is static.
  */
 const char *pc_version(void);
 
@@ -666,23 +667,23 @@ pc_status pc_error_status(const pc_error *error);
 
 /**
  * The message, in UTF-8, never NULL; it lives as long as the error. For a model it shows the line
- * at fault and what would be correct, in several lines of text. Empty for NULL.
+ * at fault and what would be correct, on several lines. Empty for NULL.
  */
 const char *pc_error_message(const pc_error *error);
 
 /**
- * The line of the model text at fault, from 1; 0 if there is none, and for NULL.
+ * The line of the model text at fault, counted from 1; 0 if there is none, and for NULL.
  */
 size_t pc_error_line(const pc_error *error);
 
 /**
- * The column at which the text at fault begins, in characters from 1; 0 if there is none, and
- * for NULL.
+ * The column at which the text at fault begins, in characters counted from 1; 0 if there is none,
+ * and for NULL.
  */
 size_t pc_error_column(const pc_error *error);
 
 /**
- * The byte at which the text at fault begins, from 0; 0 if there is none, and for NULL.
+ * The byte at which the text at fault begins, counted from 0; 0 if there is none, and for NULL.
  */
 size_t pc_error_offset(const pc_error *error);
 
@@ -738,7 +739,7 @@ pc_status pc_model_builtin(const char *name, pc_model **model, pc_error **error)
 size_t pc_builtin_count(void);
 
 /**
- * The name of such a model, from 0; NULL beyond the last. Static.
+ * The name of a model that comes with the library, counted from 0; NULL beyond the last. Static.
  */
 const char *pc_builtin_name(size_t index);
 
@@ -799,11 +800,11 @@ pc_status pc_model_differentiate(pc_model *model, int yes, pc_error **error);
 pc_status pc_model_text(const pc_model *model, char **text, pc_error **error);
 
 /**
- * Makes an empty model, to be built by the calls below. Different kinds of entries may be added in
- * any order; coordinates, quasi-velocities, parameters and so on are in the order of their calls.
- * Expressions are those of the text model, where `x'` is the velocity of the coordinate x and `t`
- * the time. The model is read as a whole by pc_model_check and pc_system_new, whose errors name
- * the entry and show its expression.
+ * Makes an empty model, to be built by the calls below. Entries of different kinds may be added in
+ * any order; coordinates, quasi-velocities, parameters and so on each keep the order of their
+ * calls. Expressions are written as in the text of a model: `x'` is the velocity of the coordinate
+ * x, and `t` is the time. The model is read as a whole by pc_model_check and pc_system_new, whose
+ * errors name the entry and show its expression.
  */
 pc_status pc_model_new(const char *name, pc_model **model, pc_error **error);
 
@@ -815,7 +816,7 @@ pc_status pc_model_new(const char *name, pc_model **model, pc_error **error);
 pc_status pc_model_check(const pc_model *model, pc_error **error);
 
 /**
- * Adds a parameter with its value, which pc_model_set and pc_system_set_parameter change.
+ * Adds a parameter with its value, which pc_model_set and pc_system_set_parameter can change.
  */
 pc_status pc_model_add_parameter(pc_model *model,
                                  const char *name,
@@ -823,8 +824,8 @@ pc_status pc_model_add_parameter(pc_model *model,
                                  pc_error **error);
 
 /**
- * Adds a parameter that is an expression in the parameters before it. It changes with them until
- * it is itself set.
+ * Adds a parameter that is an expression in the parameters before it. The new parameter changes
+ * with them until it is itself set.
  */
 pc_status pc_model_add_parameter_expression(pc_model *model,
                                             const char *name,
@@ -833,8 +834,8 @@ pc_status pc_model_add_parameter_expression(pc_model *model,
 
 /**
  * Adds a first-order state with its value at the start and its rate, which is an expression in
- * time, coordinates, velocities and states. It is integrated with the motion and comes after the
- * velocities in the state; it is not part of the frame.
+ * time, coordinates, velocities and states. The first-order state is integrated with the motion
+ * and comes after the velocities in the state; it is not part of the frame.
  */
 pc_status pc_model_add_state(pc_model *model,
                              const char *name,
@@ -843,8 +844,9 @@ pc_status pc_model_add_state(pc_model *model,
                              pc_error **error);
 
 /**
- * Sets the acceleration of gravity, along the axes of the positions of bodies, as expressions in
- * the parameters and t: it acts on the mass centres of all bodies and is included in the energy.
+ * Sets the components of the acceleration of gravity, along the axes in which the positions of
+ * bodies are given, as expressions in the parameters and t. Gravity acts on the mass centres of
+ * all bodies and is included in the energy.
  */
 pc_status pc_model_set_gravity(pc_model *model,
                                const char *x,
@@ -881,8 +883,8 @@ pc_status pc_model_add_quasi_velocity(pc_model *model,
                                       pc_error **error);
 
 /**
- * Sets the velocity of a coordinate as an expression affine in the quasi-velocities, (3). Call it
- * for every coordinate, or for none.
+ * Sets the velocity of a coordinate as an expression affine in the quasi-velocities, (3). Call
+ * this function for every coordinate, or for none.
  */
 pc_status pc_model_set_kinematics(pc_model *model,
                                   const char *coordinate,
@@ -907,8 +909,8 @@ pc_status pc_model_set_bracket(pc_model *model,
                                pc_error **error);
 
 /**
- * Adds a constraint, which says that the expression, in coordinates or in velocities, vanishes. If
- * it is not affine in the velocities, declare this with pc_model_set_constraint_kind.
+ * Adds a constraint: the expression, in coordinates or in velocities, must vanish. If it is not
+ * affine in the velocities, declare this with pc_model_set_constraint_kind.
  */
 pc_status pc_model_add_constraint(pc_model *model,
                                   const char *name,
@@ -984,9 +986,9 @@ pc_status pc_model_add_input_table(pc_model *model,
 
 /**
  * Adds an input whose table is a column of a file of comma-separated numbers, the first line of
- * which holds the names of the columns; otherwise as pc_model_add_input_table. `time` is the name
- * of the column of times, NULL for "t" or, without one, the first column. The path is relative to
- * the working directory at the time of the call.
+ * which holds the names of the columns; otherwise this is like pc_model_add_input_table. `time` is
+ * the name of the column of times, NULL for "t" or, if there is no such column, for the first one.
+ * The path is relative to the working directory at the time of the call.
  */
 pc_status pc_model_add_input_file(pc_model *model,
                                   const char *name,
@@ -997,9 +999,9 @@ pc_status pc_model_add_input_file(pc_model *model,
                                   pc_error **error);
 
 /**
- * Adds a particle, or a rigid body if it is given an inertia: its mass, and the position of
- * its mass centre or of a point of the body that is at rest, as expressions in the
- * coordinates. Energy and forces follow from the bodies, so the model needs no Lagrangian.
+ * Adds a particle, or a rigid body if it is given an inertia. The mass, and the position of the
+ * mass centre or of a point of the body that is at rest, are expressions in the coordinates.
+ * Energy and forces follow from the bodies, so the model needs no Lagrangian.
  */
 pc_status pc_model_add_body(pc_model *model,
                             const char *name,
@@ -1020,7 +1022,7 @@ pc_status pc_model_set_body_force(pc_model *model,
                                   pc_error **error);
 
 /**
- * Sets the torque on a rigid body, in the axes of its angular velocity.
+ * Sets the torque on a rigid body, in the axes in which its angular velocity is given.
  */
 pc_status pc_model_set_body_torque(pc_model *model,
                                    const char *body,
@@ -1030,7 +1032,7 @@ pc_status pc_model_set_body_torque(pc_model *model,
                                    pc_error **error);
 
 /**
- * Sets the angular velocity of a rigid body, in axes of the body. Excludes
+ * Sets the angular velocity of a rigid body, in axes of the body. It cannot be combined with
  * pc_model_set_body_rotation.
  */
 pc_status pc_model_set_body_angular_velocity(pc_model *model,
@@ -1062,10 +1064,10 @@ pc_status pc_model_set_body_rotation(pc_model *model,
 
 /**
  * Adds a body that is attached to another, or to the world if `parent` is null, by a joint of this
- * kind: fixed, revolute, prismatic, screw, cylindrical, universal, planar, spherical, free. Its
- * origin is the point of the joint. Inertia, force and torque are set as for other bodies, start
- * values by pc_model_add_coordinate and pc_model_add_quasi_velocity with the names that the joint
- * gives, such as `NAME` and `NAME'` for a revolute one.
+ * kind: fixed, revolute, prismatic, screw, cylindrical, universal, planar, spherical, free. The
+ * origin of the body is the point of the joint. Inertia, force and torque are set as for other
+ * bodies, start values by pc_model_add_coordinate and pc_model_add_quasi_velocity with the names
+ * that the joint gives, such as `NAME` and `NAME'` for a revolute one.
  */
 pc_status pc_model_add_jointed_body(pc_model *model,
                                     const char *name,
@@ -1130,7 +1132,7 @@ pc_status pc_model_set_joint_pitch(pc_model *model,
 
 /**
  * Sets the rotation from the axes of a joint to those of the parent: the 9 entries of its
- * matrix, row by row. Excludes pc_model_set_joint_turns.
+ * matrix, row by row. It cannot be combined with pc_model_set_joint_turns.
  */
 pc_status pc_model_set_joint_rotation(pc_model *model,
                                       const char *body,
@@ -1139,8 +1141,9 @@ pc_status pc_model_set_joint_rotation(pc_model *model,
                                       pc_error **error);
 
 /**
- * Sets the same rotation as a sequence of turns about axes: `axes` has a letter x, y or z for each
- * of the `length` angles; each turn is about an axis that the turns before it have moved.
+ * Sets the rotation of pc_model_set_joint_rotation as a sequence of turns about axes: `axes` has a
+ * letter x, y or z for each of the `length` angles; each turn is about an axis as moved by the
+ * turns before it.
  */
 pc_status pc_model_set_joint_turns(pc_model *model,
                                    const char *body,
@@ -1212,13 +1215,14 @@ pc_status pc_model_set_loop_length(pc_model *model,
 
 /**
  * Sets a function S of time, coordinates and constants that is claimed to solve
- * Hamilton–Jacobi's equation; pc_system_theory examines the claim. Motions do not depend on it.
+ * Hamilton–Jacobi's equation; pc_system_theory examines the claim. Motions do not depend on this
+ * function.
  */
 pc_status pc_model_set_action(pc_model *model, const char *expression, pc_error **error);
 
 /**
- * Adds a constant of the action, with a value near which the action is defined: if it cannot be
- * proved that the action solves the equation, this is tested numerically near these values.
+ * Adds a constant of the action, with a value near which the action is defined: if no proof is
+ * found that the action solves the equation, the claim is tested numerically near these values.
  */
 pc_status pc_model_add_action_constant(pc_model *model,
                                        const char *name,
@@ -1231,7 +1235,7 @@ pc_status pc_model_add_action_constant(pc_model *model,
 pc_status pc_model_set_description(pc_model *model, const char *description, pc_error **error);
 
 /**
- * Sets the reference from which the model comes.
+ * Sets the reference to the source of the model.
  */
 pc_status pc_model_set_reference(pc_model *model, const char *reference, pc_error **error);
 
@@ -1242,7 +1246,7 @@ pc_status pc_model_set_reference(pc_model *model, const char *reference, pc_erro
 pc_status pc_model_set_start(pc_model *model, const char *name, double value, pc_error **error);
 
 /**
- * Changes a start value to an expression in parameters; otherwise as pc_model_set_start.
+ * Changes a start value to an expression in parameters; otherwise this is like pc_model_set_start.
  */
 pc_status pc_model_set_start_expression(pc_model *model,
                                         const char *name,
@@ -1264,8 +1268,8 @@ pc_status pc_model_set_constraint_kind(pc_model *model,
 pc_status pc_model_set_start_time(pc_model *model, double t, pc_error **error);
 
 /**
- * Sets the time to which the program `pc` runs the model. It is written to the text, as are the
- * settings of the next five functions; solvers take pc_solver_options instead.
+ * Sets the time until which the program `pc` runs the model. This time is written to the text, as
+ * are the settings of the next five functions; solvers take pc_solver_options instead.
  */
 pc_status pc_model_set_end_time(pc_model *model, double t, pc_error **error);
 
@@ -1315,14 +1319,14 @@ pc_status pc_model_set_form(pc_model *model, const char *form, pc_error **error)
 pc_status pc_cancel_new(pc_cancel **cancel, pc_error **error);
 
 /**
- * Ends derivations and integrations with PC_LIMIT: those under way end soon, later ones as soon as
- * they begin. It takes no lock and allocates nothing: it is the one function that a signal handler
- * may call. NULL is allowed.
+ * Ends derivations and integrations with PC_LIMIT: those under way end soon, and later ones as
+ * soon as they begin. It takes no lock and allocates nothing: it is the one function that a signal
+ * handler may call. NULL is allowed.
  */
 void pc_cancel_request(const pc_cancel *cancel);
 
 /**
- * 1 after pc_cancel_request, else 0; 0 for NULL.
+ * Returns 1 after pc_cancel_request, else 0; 0 for NULL.
  */
 int pc_cancel_is_requested(const pc_cancel *cancel);
 
@@ -1343,8 +1347,8 @@ void pc_solver_options_init(pc_solver_options *options, size_t size);
 
 /**
  * Derives and compiles the equations of a model. `options` may be NULL. This takes from
- * milliseconds to seconds (for a hundred bodies); other functions are fast unless they say
- * that they derive.
+ * milliseconds to seconds (the latter for a hundred bodies); other functions are fast unless they
+ * say that they derive.
  */
 pc_status pc_system_new(const pc_model *model,
                         const pc_system_options *options,
@@ -1407,28 +1411,28 @@ size_t pc_system_constraint_count(const pc_system *system);
 size_t pc_system_reaction_count(const pc_system *system);
 
 /**
- * The name of a component of the state, from 0; NULL beyond the last.
+ * The name of a component of the state, counted from 0; NULL beyond the last.
  */
 const char *pc_system_name(const pc_system *system, size_t index);
 
 /**
- * The name of a parameter, from 0; NULL beyond the last.
+ * The name of a parameter, counted from 0; NULL beyond the last.
  */
 const char *pc_system_parameter_name(const pc_system *system, size_t index);
 
 /**
- * The name of an observable, from 0; NULL beyond the last.
+ * The name of an observable, counted from 0; NULL beyond the last.
  */
 const char *pc_system_observable_name(const pc_system *system, size_t index);
 
 /**
- * The name of a constraint that projection maintains, from 0; NULL beyond the last.
+ * The name of a constraint that projection maintains, counted from 0; NULL beyond the last.
  */
 const char *pc_system_constraint_name(const pc_system *system, size_t index);
 
 /**
- * The name of a reaction, `λ_` followed by the name of its constraint, from 0; NULL beyond the
- * last.
+ * The name of a reaction, `λ_` followed by the name of its constraint, counted from 0; NULL beyond
+ * the last.
  */
 const char *pc_system_reaction_name(const pc_system *system, size_t index);
 
@@ -1443,9 +1447,9 @@ pc_status pc_system_start(const pc_system *system,
 
 /**
  * Writes the absolute tolerance of each component of the state with which the program `pc` would
- * run the system from its start to t_end: that of the text if it gives one, else min(1e-12,
- * relative·s) for a component of scale s at the start, where f is evaluated once, but no less than
- * the rounding error of the largest component. pc_solver_options takes them as
+ * run the system from its start to t_end: the tolerance in the text if it gives one, else
+ * min(1e-12, relative·s) for a component of scale s at the start, where f is evaluated once, but
+ * no less than the rounding error of the largest component. pc_solver_options takes them as
  * absolute_tolerances.
  */
 pc_status pc_system_absolute_tolerances(const pc_system *system,
@@ -1474,14 +1478,14 @@ pc_status pc_system_set_parameters(pc_system *system,
                                    pc_error **error);
 
 /**
- * Sets one parameter, by its index; parameters that are expressions in it follow, unless they
- * have themselves been set. Otherwise as pc_system_set_parameters.
+ * Sets one parameter, by its index; parameters that are expressions in it change with it, unless
+ * they have themselves been set. Otherwise this is like pc_system_set_parameters.
  */
 pc_status pc_system_set_parameter(pc_system *system, size_t index, double value, pc_error **error);
 
 /**
- * Writes the index of a component of the state, from 0, by its name. PC_NOT_FOUND if no
- * component has this name.
+ * Writes the index of a component of the state, counted from 0, by its name. Returns PC_NOT_FOUND
+ * if no component has this name.
  */
 pc_status pc_system_find(const pc_system *system,
                          const char *name,
@@ -1489,7 +1493,7 @@ pc_status pc_system_find(const pc_system *system,
                          pc_error **error);
 
 /**
- * Writes the index of a parameter or input, from 0, by its name, as pc_system_find.
+ * Writes the index of a parameter or input, counted from 0, by its name, as pc_system_find does.
  */
 pc_status pc_system_find_parameter(const pc_system *system,
                                    const char *name,
@@ -1497,7 +1501,7 @@ pc_status pc_system_find_parameter(const pc_system *system,
                                    pc_error **error);
 
 /**
- * Writes the index of an observable, from 0, by its name, as pc_system_find.
+ * Writes the index of an observable, counted from 0, by its name, as pc_system_find does.
  */
 pc_status pc_system_find_observable(const pc_system *system,
                                     const char *name,
@@ -1506,9 +1510,9 @@ pc_status pc_system_find_observable(const pc_system *system,
 
 /**
  * Declares that a force computed by a function of yours acts on a quasi-velocity, or on a
- * coordinate if the model declares no quasi-velocities. It is added to the other forces that act
- * there. The function belongs to the system, not to the model: set it with pc_system_set_force. An
- * unknown name is reported by pc_model_check and pc_system_new.
+ * coordinate if the model declares no quasi-velocities. This force is added to the other forces
+ * that act there. The function belongs to the system, not to the model: set it with
+ * pc_system_set_force. An unknown name is reported by pc_model_check and pc_system_new.
  */
 pc_status pc_model_add_external_force(pc_model *model, const char *on, pc_error **error);
 
@@ -1518,23 +1522,25 @@ pc_status pc_model_add_external_force(pc_model *model, const char *on, pc_error 
 size_t pc_system_force_count(const pc_system *system);
 
 /**
- * The name of the quasi-velocity on which an external force acts, from 0; NULL beyond the last.
+ * The name of the quasi-velocity on which an external force acts, counted from 0; NULL beyond the
+ * last.
  */
 const char *pc_system_force_name(const pc_system *system, size_t index);
 
 /**
  * Sets the function that computes the external forces, all at once: the Q_s of the declared
- * quasi-velocities. Until then nothing that needs them can be evaluated. `jacobian` may be NULL:
- * the derivatives of the forces, and only these, are then difference quotients.
+ * quasi-velocities. Until it is set, nothing that needs these forces can be evaluated. `jacobian`
+ * may be NULL: the derivatives of the forces, and only these, are then computed as difference
+ * quotients.
  *
  * Copies, kernels and solvers made from the system afterwards share the functions and `user`;
  * those made before keep the functions they had. The functions are called on whichever thread
- * evaluates, and so on several at the same time if several threads use copies. They may call any
- * function on other handles, and on the same system those that return names (pc_system_..._name)
- * and sizes.
+ * evaluates; if several threads use copies, several calls may run at the same time. They may call
+ * any function on other handles, and on the same system those that return names
+ * (pc_system_..._name) and sizes.
  *
  * `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else
- * when the last handle that shares it is freed or given another function. It must not use a
+ * when the last handle that shares it is freed or given another function. `destroy` must not use a
  * handle that is being freed.
  */
 pc_status pc_system_set_force(pc_system *system,
@@ -1548,8 +1554,8 @@ pc_status pc_system_set_force(pc_system *system,
  * Adds a quasi-velocity to those of the model, for systems of the form PC_HAMEL: a linear
  * form in the velocities x' or the quasi-velocities of the model, such as "r*f'". Where fewer are
  * given than there are independent quasi-velocities, the missing ones are taken from those of the
- * model. Each is also an output. Errors in its definition are reported by pc_model_check and
- * pc_system_new.
+ * model. Each added quasi-velocity is also an output. Errors in its definition are reported by
+ * pc_model_check and pc_system_new.
  */
 pc_status pc_model_give_quasi_velocity(pc_model *model,
                                        const char *name,
@@ -1558,8 +1564,8 @@ pc_status pc_model_give_quasi_velocity(pc_model *model,
 
 /**
  * Chooses a velocity as independent; there must be as many choices as there are velocities that
- * the constraints leave free. Where multipliers would impose the constraints, systems then have
- * equations without multipliers. The name is that of a quasi-velocity, or x' where there are none.
+ * the constraints leave free. Systems whose equations would otherwise contain multipliers then
+ * have equations without them. The name is that of a quasi-velocity, or x' where there are none.
  * Without such choices, printed equations and source use the velocities that make them shortest. A
  * wrong choice is reported by pc_system_new.
  */
@@ -1633,8 +1639,9 @@ pc_status pc_system_jvp(const pc_system *system,
 /**
  * Writes ∂f/∂p, dim × pc_system_parameter_count and column-major, so `length` is their product.
  * Each derivative is taken with all other parameters fixed, even those that are expressions in
- * this one; for an input with a table it is that with respect to the value of the input. Returns
- * PC_UNSUPPORTED unless pc_model_differentiate was called, and with external forces.
+ * this one; for an input with a table, the derivative is taken with respect to the value of the
+ * input. Returns PC_UNSUPPORTED if pc_model_differentiate was not called, or if there are external
+ * forces.
  */
 pc_status pc_system_parameter_jacobian(const pc_system *system,
                                        double t,
@@ -1646,8 +1653,8 @@ pc_status pc_system_parameter_jacobian(const pc_system *system,
 
 /**
  * Writes ∂f/∂t, which Rosenbrock's methods need; it has the length of the state. The first call
- * derives it, as pc_system_new derives equations, unless f is free of t. Returns PC_UNSUPPORTED
- * with external forces, whose ∂/∂t is unknown, and with inputs that have tables.
+ * derives it, as pc_system_new derives equations, unless f does not contain t. Returns
+ * PC_UNSUPPORTED if there are external forces, whose ∂/∂t is unknown, or inputs that have tables.
  */
 pc_status pc_system_time_derivative(const pc_system *system,
                                     double t,
@@ -1684,8 +1691,8 @@ pc_status pc_system_keep_from(pc_system *system,
  * Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the
  * energy, the outputs.
  *
- * Where an observable has no value, the number is not finite; the same holds for an observable
- * that contains accelerations where external forces cannot be computed.
+ * Where an observable has no value, its entry is not a finite number; the same holds for an
+ * observable that contains accelerations where external forces cannot be computed.
  */
 pc_status pc_system_observe(const pc_system *system,
                             double t,
@@ -1696,8 +1703,8 @@ pc_status pc_system_observe(const pc_system *system,
                             pc_error **error);
 
 /**
- * Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: the
- * first of the observables, which should stay constant.
+ * Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: these are
+ * the first of the observables, and should stay constant.
  */
 pc_status pc_system_integrals(const pc_system *system,
                               double t,
@@ -1708,7 +1715,7 @@ pc_status pc_system_integrals(const pc_system *system,
                               pc_error **error);
 
 /**
- * Writes the energy y_s η_s − L at (t, y). No function of external forces is called.
+ * Writes the energy y_s η_s − L at (t, y). No function that computes external forces is called.
  */
 pc_status pc_system_energy(const pc_system *system,
                            double t,
@@ -1743,7 +1750,7 @@ pc_status pc_system_constraint_residuals(const pc_system *system,
 
 /**
  * Adds an event, which occurs where the expression `when` passes through zero in the given
- * direction, a pc_direction. If `terminal` is not 0 it ends an integration with PC_EVENT.
+ * direction, a pc_direction. If `terminal` is not 0, the event ends an integration with PC_EVENT.
  * Simultaneous events are handled in the order in which they were added.
  */
 pc_status pc_model_add_event(pc_model *model,
@@ -1756,7 +1763,7 @@ pc_status pc_model_add_event(pc_model *model,
 /**
  * Adds a reset to an event: where the event occurs, the coordinate, quasi-velocity or
  * velocity `x'` called `variable` takes the value of the expression. All resets of an event take
- * effect together and use the state before it.
+ * effect together and use the state before the event.
  */
 pc_status pc_model_add_event_reset(pc_model *model,
                                    const char *event,
@@ -1770,7 +1777,7 @@ pc_status pc_model_add_event_reset(pc_model *model,
 size_t pc_system_event_count(const pc_system *system);
 
 /**
- * The name of an event, from 0; NULL beyond the last.
+ * The name of an event, counted from 0; NULL beyond the last.
  */
 const char *pc_system_event_name(const pc_system *system, size_t index);
 
@@ -1781,19 +1788,19 @@ const char *pc_system_event_name(const pc_system *system, size_t index);
 int pc_system_event_direction(const pc_system *system, size_t index);
 
 /**
- * 1 if an event ends the integration, else 0.
+ * Returns 1 if an event ends the integration, else 0.
  */
 int pc_system_event_is_terminal(const pc_system *system, size_t index);
 
 /**
- * 1 if an event resets the state, else 0.
+ * Returns 1 if an event resets the state, else 0.
  */
 int pc_system_event_resets(const pc_system *system, size_t index);
 
 /**
  * Writes the functions of the events at (t, y), as many as pc_system_event_count: an event
- * occurs where its function passes through zero. Where a function has no value, the number is
- * not finite.
+ * occurs where its function passes through zero. Where a function has no value, its entry is not a
+ * finite number.
  */
 pc_status pc_system_events(const pc_system *system,
                            double t,
@@ -1804,8 +1811,8 @@ pc_status pc_system_events(const pc_system *system,
                            pc_error **error);
 
 /**
- * Turns the state y before an event, number `event` from 0, into the state after it. An event
- * without resets leaves y unchanged.
+ * Turns the state y before an event, number `event` counted from 0, into the state after it. An
+ * event without resets leaves y unchanged.
  */
 pc_status pc_system_event_reset(const pc_system *system,
                                 size_t event,
@@ -1817,7 +1824,7 @@ pc_status pc_system_event_reset(const pc_system *system,
 /**
  * Writes the mass matrix M = ∂²L/∂η∂η at (t, y), k × k for the k quasi-velocities of the state,
  * so `length` is k*k; k is pc_system_dim less pc_system_coordinate_count and
- * pc_system_state_count. Rows for multipliers are not part of it. The first call derives M, as
+ * pc_system_state_count. Rows for multipliers are not part of M. The first call derives M, as
  * pc_system_new derives equations.
  */
 pc_status pc_system_mass_matrix(const pc_system *system,
@@ -1878,9 +1885,9 @@ pc_status pc_system_structure_coefficients(const pc_system *system,
 
 /**
  * Writes the residual of the equations for ydot in the form expected by codes for implicit
- * equations F(t, y, ẏ) = 0: ẋ − b η − b_0, then M η̇ − r, without dividing by M. With multipliers,
- * whose reactions are eliminated, the second part is M times the error of η̇; in the canonical
- * form the residual is ẏ − f. The first call derives, as pc_system_new does.
+ * equations F(t, y, ẏ) = 0: ẋ − b η − b_0, then M η̇ − r, without dividing by M. If there are
+ * multipliers, whose reactions are eliminated, the second part is M times the error of η̇; in the
+ * canonical form the residual is ẏ − f. The first call derives equations, as pc_system_new does.
  */
 pc_status pc_system_residual(const pc_system *system,
                              double t,
@@ -1893,14 +1900,14 @@ pc_status pc_system_residual(const pc_system *system,
                              pc_error **error);
 
 /**
- * Writes the value at (t, y) of the Poisson bracket in coordinates and momenta, (12), of two
+ * Writes the value at (t, y) of the Poisson bracket (12), in coordinates and momenta, of two
  * functions,
  *
  *   (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m,
  *
  * so that (x_i, H) = ẋ_i and (y_s, H) = ẏ_s where nothing depends on time and there are no
  * forces. The functions are expressions of the model in coordinates and velocities; the
- * momenta y_s = ∂L/∂η_s are substituted. Under nonholonomic constraints it is the
+ * momenta y_s = ∂L/∂η_s are substituted. Under nonholonomic constraints the bracket is the
  * almost-Poisson bracket of the independent momenta. Each call derives equations, as pc_system_new
  * does.
  */
@@ -1940,7 +1947,7 @@ pc_status pc_system_to_quasi_velocities(const pc_system *system,
 /**
  * Derives and prints the equations, as `pc derive` does: constraints, kinematics, brackets,
  * equations, energy and reactions, or momenta and Hamiltonian, and the operations of one
- * right-hand side. Where constraints are imposed by multipliers, it shows the equations in
+ * right-hand side. Where constraints are imposed by multipliers, the text shows the equations in
  * independent velocities. `format` is a pc_format. Parameters have the values of the model. Free
  * the text with pc_string_free.
  */
@@ -1952,11 +1959,11 @@ pc_status pc_system_print(const pc_system *system, int format, char **text, pc_e
  * names, runs of other characters one `_`, with none at the ends; `n_` precedes a leading digit,
  * `_` follows a keyword of C. The source has the right-hand side, its Jacobian, the mass matrix,
  * the energy, the integrals and the outputs in terms of independent quasi-velocities, or of
- * momenta if these are in the state of the system, and explains its use at its head. External
- * forces are parameters that come after the others; their names are `Q_` followed by that of their
- * quasi-velocity, and they are zero until they are set. If `t_end` is finite, it can be compiled
- * with -DNAME_MAIN (in capitals) to a program that integrates from the start of the model to that
- * time. Free both texts with pc_string_free.
+ * momenta if these are in the state of the system, and begins with a comment that explains its
+ * use. External forces are parameters that come after the others; the name of each is `Q_`
+ * followed by the name of its quasi-velocity, and they are zero until they are set. If `t_end` is
+ * finite, the source can be compiled with -DNAME_MAIN (in capitals) into a program that integrates
+ * from the start of the model to that time. Free both texts with pc_string_free.
  */
 pc_status pc_system_emit_c(const pc_system *system,
                            const char *name,
@@ -1969,7 +1976,7 @@ pc_status pc_system_emit_c(const pc_system *system,
  * Prints an analysis of the motions that is made without integrating them, as `pc theory` does:
  * momenta and their brackets, Casimirs, integrals, cyclic displacements, invariant measure,
  * Chaplygin's multiplier, Hamilton-Jacobi's equation, steady motions, Routh's reduction. Each
- * claim is marked proved, disproved or open. The integrals sought are polynomials of a `degree`
+ * claim is marked as proved, disproved or open. The integrals sought are polynomials of a `degree`
  * from 1 to 6 in the velocities, whose coefficients are polynomials in the coordinates times 1 or
  * one of the `functions`, expressions of the model; the list may be empty. `format` is a
  * pc_format. Parameters have the values of the model. Everything is derived again, which takes
@@ -1987,16 +1994,17 @@ pc_status pc_system_theory(const pc_system *system,
  * Derives the equations of the model a second time, by a route that shares only the text of the
  * model with the first, and compares both at `states` random states on the constraints, for the
  * current parameters: velocities, accelerations or rates of momenta, reactions, the energy and its
- * rate of change, integrals and outputs. 0 states mean 100. `text` says how closely they agree and
- * what was not compared, on separate lines; it may be NULL, and is freed with pc_string_free.
- * External forces are taken to be 0. Returns PC_DISAGREEMENT, with the quantity and both its
- * values, if the two differ, which is a defect of the library; PC_UNSUPPORTED if there is no
- * second derivation for this model. The call takes as long as pc_system_new.
+ * rate of change, integrals and outputs. A value of 0 stands for 100 states. `text` says how
+ * closely they agree and what was not compared, on separate lines; it may be NULL, and is freed
+ * with pc_string_free. External forces are taken to be 0. Returns PC_DISAGREEMENT, with the
+ * quantity and both its values, if the two derivations differ, which is a defect of the library;
+ * PC_UNSUPPORTED if there is no second derivation for this model. The call takes as long as
+ * pc_system_new.
  */
 pc_status pc_system_verify(const pc_system *system, size_t states, char **text, pc_error **error);
 
 /**
- * As pc_system_verify, at one state of the system, such as that of a solver: its time, and the
+ * As pc_system_verify, but at one state of the system, such as that of a solver: its time, and the
  * state that pc_solver_advance has written.
  */
 pc_status pc_system_verify_at(const pc_system *system,
@@ -2028,15 +2036,15 @@ pc_status pc_kernel_set_parameters(pc_kernel *kernel,
  * Writes ydot = f(t, y), both of pc_system_dim numbers, which is not checked; they must not
  * share memory. `kernel` is a pc_kernel of this thread.
  *
- * Returns 0; 1 where f cannot be evaluated and a smaller step may help; −1 where no step
- * helps. pc_system_rhs at the same (t, y) says why. It is the function that GSL's odeiv2
- * takes, with the kernel as `params`.
+ * Returns 0 on success, 1 where f cannot be evaluated but a smaller step may help, and −1 where no
+ * step helps. pc_system_rhs at the same (t, y) says why. It has the form of the functions that
+ * GSL's odeiv2 takes, with the kernel as `params`.
  */
 int pc_kernel_rhs(double t, const double *y, double *ydot, void *kernel);
 
 /**
- * Writes ∂f/∂y, dim × dim and column-major; otherwise as pc_kernel_rhs. The first call compiles
- * it.
+ * Writes ∂f/∂y, dim × dim and column-major; otherwise it is like pc_kernel_rhs. The first call
+ * compiles it.
  */
 int pc_kernel_jacobian(double t,
                        const double *y,
@@ -2044,10 +2052,10 @@ int pc_kernel_jacobian(double t,
                        void *kernel);
 
 /**
- * Writes f(t, y) of `count` states, which are given one after the other in `states`, to `rates`,
- * in the same order. Otherwise as pc_kernel_rhs: returns 1 if f cannot be evaluated at some
- * states, whose rates are then NaN; −1 at a state where no step helps, and the rates of the states
- * after it are not written.
+ * Writes f(t, y) for `count` states, which are given one after the other in `states`, to `rates`,
+ * in the same order. Otherwise it is like pc_kernel_rhs: it returns 1 if f cannot be evaluated at
+ * some states, whose rates are then NaN; it returns −1 at a state where no step helps, and does
+ * not write the rates of the states after it.
  */
 int pc_kernel_rhs_many(double t, const double *states, size_t count, double *rates, void *kernel);
 
@@ -2082,16 +2090,16 @@ void pc_solver_free(pc_solver *solver);
  * Makes a solver continue with the current parameters and inputs of the system: it restarts
  * at its current state, at order 1. This is how inputs change between two calls of
  * pc_solver_advance. The system must be that of the solver, or one of the same model. Returns
- * PC_UNSUPPORTED with events of pc_solver_add_event.
+ * PC_UNSUPPORTED if the solver has events added by pc_solver_add_event.
  */
 pc_status pc_solver_take_parameters(pc_solver *solver, const pc_system *system, pc_error **error);
 
 /**
  * Integrates to the time t, in the direction of the first step, and writes the state there.
- * With PC_EVENT and PC_STOPPED it is the state where the integration ended, and
+ * When PC_EVENT or PC_STOPPED is returned, it is the state where the integration ended, and
  * pc_solver_time gives the time; the next call continues from there. After a failure
- * pc_solver_time and pc_solver_state give what was reached. PC_LIMIT is such a failure; it is due
- * to the time limit or the pc_cancel of the system's options.
+ * pc_solver_time and pc_solver_state give the time and state that were reached. PC_LIMIT is such a
+ * failure; it is due to the time limit or the pc_cancel of the system's options.
  */
 pc_status pc_solver_advance(pc_solver *solver,
                             double t,
@@ -2102,7 +2110,7 @@ pc_status pc_solver_advance(pc_solver *solver,
 /**
  * Takes one internal step in the direction of `towards`, or the part of it before an event, and
  * writes the time at its end, which may lie beyond `towards`, and the state there; both are also
- * written with PC_EVENT and PC_STOPPED.
+ * written when PC_EVENT or PC_STOPPED is returned.
  */
 pc_status pc_solver_step(pc_solver *solver,
                          double towards,
@@ -2115,8 +2123,7 @@ pc_status pc_solver_step(pc_solver *solver,
  * Integrates through the times, which increase or decrease throughout, and calls `observer`
  * at each with the state, which is valid during the call, and with `user`. Returns PC_STOPPED if
  * the observer stops it. At the time of an event the observer receives the state after the event;
- * a terminal event brings the last call of the observer, at the time of the event, and PC_EVENT is
- * returned.
+ * at a terminal event the observer is called for the last time, and PC_EVENT is returned.
  */
 pc_status pc_solver_run(pc_solver *solver,
                         const double *times,
@@ -2137,8 +2144,8 @@ pc_status pc_solver_state(const pc_solver *solver, double *y, size_t y_length, p
 
 /**
  * Sets the observer that is called for each event from now on, in place of the previous one; NULL
- * for none. `user` has to live until another observer is set or the solver is freed. The observer
- * is called during the calls that integrate, on their thread.
+ * for none. `user` must stay valid until another observer is set or the solver is freed. The
+ * observer is called during the calls that integrate, on their thread.
  */
 pc_status pc_solver_observe_events(pc_solver *solver,
                                    pc_event_observer observer,
@@ -2146,9 +2153,10 @@ pc_status pc_solver_observe_events(pc_solver *solver,
                                    pc_error **error);
 
 /**
- * The same, with a `user` that the solver owns: `destroy`, unless NULL, is called with it exactly
- * once: by this call if it fails or `observer` is NULL, else when another observer takes its place
- * or the solver is freed. It must not use the solver while the solver is being freed.
+ * The same as pc_solver_observe_events, with a `user` that the solver owns. `destroy`, unless
+ * NULL, is called with `user` exactly once: by this call if it fails or `observer` is NULL, else
+ * when another observer takes its place or the solver is freed. `destroy` must not use the solver
+ * while the solver is being freed.
  */
 pc_status pc_solver_set_event_observer(pc_solver *solver,
                                        pc_event_observer observer,
@@ -2160,11 +2168,11 @@ pc_status pc_solver_set_event_observer(pc_solver *solver,
  * Follows an event of your program, numbered after those of the model and those added before: it
  * occurs where `function` passes through zero in the given direction, a pc_direction. There
  * `reset`, unless NULL, changes the state, which is then projected onto the constraints; if
- * `terminal` is not 0 the event ends the call with PC_EVENT. Must be called before the first step.
- * `name` is for messages.
+ * `terminal` is not 0 the event ends the call with PC_EVENT. The call must be made before the
+ * first step. `name` is for messages.
  *
  * `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else by
- * pc_solver_free. It must not use the solver.
+ * pc_solver_free. `destroy` must not use the solver.
  */
 pc_status pc_solver_add_event(pc_solver *solver,
                               const char *name,
@@ -2182,7 +2190,7 @@ pc_status pc_solver_add_event(pc_solver *solver,
 size_t pc_solver_event_count(const pc_solver *solver);
 
 /**
- * The name of an event, from 0; NULL beyond the last.
+ * The name of an event, counted from 0; NULL beyond the last.
  */
 const char *pc_solver_event_name(const pc_solver *solver, size_t index);
 
@@ -2216,9 +2224,9 @@ pc_status pc_solver_terminal_event(const pc_solver *solver, size_t *event, pc_er
 
 /**
  * Writes the derivative of the start of the model with respect to parameter number `parameter`,
- * from 0: start values may be expressions in parameters. The call derives the equations. Returns
- * PC_INCONSISTENT_MODEL where there is no start for nearby values of the parameter, for an input
- * with a table, and for a parameter that is an expression in others.
+ * counted from 0: start values may be expressions in parameters. The call derives the equations.
+ * Returns PC_INCONSISTENT_MODEL where there is no start for nearby values of the parameter, for an
+ * input with a table, and for a parameter that is an expression in others.
  */
 pc_status pc_system_start_by_parameter(const pc_system *system,
                                        size_t parameter,
@@ -2228,12 +2236,13 @@ pc_status pc_system_start_by_parameter(const pc_system *system,
 
 /**
  * Adds, before the first step, a sensitivity that a solver integrates with the motion: the
- * derivative of the state with respect to parameter number `parameter`, from 0. `start` is the
- * derivative of the start, which pc_system_start_by_parameter gives for that of the model; NULL,
- * of length 0, for a start that does not depend on the parameter. Needs pc_model_differentiate.
- * Sensitivities jump where an event of the model resets the state; with an event of the program
- * that does so, the call returns PC_INVALID_ARGUMENT. For an input with a table it is the
- * derivative with respect to a shift of all its values.
+ * derivative of the state with respect to parameter number `parameter`, counted from 0. `start` is
+ * the derivative of the start, which pc_system_start_by_parameter gives for the start of the
+ * model; NULL, of length 0, for a start that does not depend on the parameter. Requires that
+ * pc_model_differentiate was called. Sensitivities jump where an event of the model resets the
+ * state; with an event of the program that does so, the call returns PC_INVALID_ARGUMENT. For an
+ * input with a table, the sensitivity is the derivative with respect to a shift of all values of
+ * the table.
  */
 pc_status pc_solver_add_sensitivity(pc_solver *solver,
                                     size_t parameter,
@@ -2242,8 +2251,8 @@ pc_status pc_solver_add_sensitivity(pc_solver *solver,
                                     pc_error **error);
 
 /**
- * Writes sensitivity number `number`, from 0 in the order in which they were added, at the
- * time of the solver; it has the length of the state.
+ * Writes sensitivity number `number`, counted from 0 in the order in which sensitivities were
+ * added, at the time of the solver; it has the length of the state.
  */
 pc_status pc_solver_sensitivity(const pc_solver *solver,
                                 size_t number,
@@ -2255,7 +2264,7 @@ pc_status pc_solver_sensitivity(const pc_solver *solver,
  * Writes the derivative of y of the given order, 0 for y itself, at a time in the last internal
  * step, from the polynomial of the method, whose degree is the order of that step. The step
  * extends from step_time − last_step to step_time of pc_statistics, but not beyond an event; there
- * is no such step before the first one and after a reset. y satisfies the constraints; its
+ * is no such step before the first step or just after a reset. y satisfies the constraints; its
  * derivatives are those of the polynomial.
  */
 pc_status pc_solver_interpolate(pc_solver *solver,
@@ -2267,16 +2276,16 @@ pc_status pc_solver_interpolate(pc_solver *solver,
 
 /**
  * Integrates to the time t, which must differ from that of the solver, as pc_solver_advance
- * does, and records the motion from the previous time of the solver: (order + 2) × dim numbers for
- * each internal step. `dense` is also made with PC_EVENT and PC_STOPPED, and then ends where the
- * integration did.
+ * does, and records the motion from the previous time of the solver on; this takes (order + 2) ×
+ * dim numbers for each internal step. `dense` is also made when PC_EVENT or PC_STOPPED is
+ * returned; it then ends where the integration ended.
  */
 pc_status pc_solver_run_dense(pc_solver *solver, double t, pc_dense **dense, pc_error **error);
 
 /**
- * Writes y(t). At an event this is the state after it, except at the very end, where it is
- * the limit from before. Inside a step it deviates from the constraints by the error of a step;
- * pc_system_project moves it onto them.
+ * Writes y(t). At an event this is the state after the event, except at the very end of the
+ * motion, where it is the limit from before. Inside a step the state deviates from the constraints
+ * by the error of a step; pc_system_project moves it onto the constraints.
  */
 pc_status pc_dense_eval(const pc_dense *dense,
                         double t,
@@ -2285,7 +2294,8 @@ pc_status pc_dense_eval(const pc_dense *dense,
                         pc_error **error);
 
 /**
- * Writes the rate of y at t. It may jump by the error of a step where one step meets the next.
+ * Writes the rate of y at t. The rate may jump by the error of a step where one step meets the
+ * next.
  */
 pc_status pc_dense_rate(const pc_dense *dense,
                         double t,
@@ -2304,7 +2314,8 @@ size_t pc_dense_dim(const pc_dense *dense);
 double pc_dense_t_begin(const pc_dense *dense);
 
 /**
- * The time at which the motion ends, before its beginning if it runs back in time; NaN for NULL.
+ * The time at which the motion ends, which precedes its beginning if the motion runs backwards in
+ * time; NaN for NULL.
  */
 double pc_dense_t_end(const pc_dense *dense);
 
@@ -2314,14 +2325,14 @@ double pc_dense_t_end(const pc_dense *dense);
 void pc_dense_free(pc_dense *dense);
 
 /**
- * Writes time and state of a solver as bytes, to be freed with pc_bytes_free and read by
+ * Writes the time and state of a solver as bytes, to be freed with pc_bytes_free and read by
  * pc_solver_restore, possibly in another run of the program. `label` says what the checkpoint
  * belongs to; NULL means the empty text.
  *
  * A multistep method depends on earlier steps, so this solver restarts here too, at order 1:
  * from here on, it and the solvers restored from the checkpoint give the same numbers to the
- * last bit. Events of the model are part of the checkpoint; a solver with events of
- * pc_solver_add_event returns PC_UNSUPPORTED.
+ * last bit. Events of the model are part of the checkpoint; for a solver with events added by
+ * pc_solver_add_event the call returns PC_UNSUPPORTED.
  */
 pc_status pc_solver_checkpoint(pc_solver *solver,
                                const char *label,
@@ -2334,7 +2345,7 @@ pc_status pc_solver_checkpoint(pc_solver *solver,
  * It continues exactly as the original solver did if the system, the parameters and the options
  * are the same. `options` may be NULL. Returns PC_INVALID_CHECKPOINT unless the bytes are exactly
  * what pc_solver_checkpoint wrote, for a model with the same names and equations; the values of
- * parameters may differ. The statistics of the solver count from here.
+ * parameters may differ. The statistics of the solver count the work from the checkpoint on.
  */
 pc_status pc_solver_restore(const pc_system *system,
                             const pc_solver_options *options,
@@ -2344,8 +2355,8 @@ pc_status pc_solver_restore(const pc_system *system,
                             pc_error **error);
 
 /**
- * Writes the label of a checkpoint, to be freed with pc_string_free. PC_INVALID_CHECKPOINT as
- * for pc_solver_restore.
+ * Writes the label of a checkpoint, to be freed with pc_string_free. Returns PC_INVALID_CHECKPOINT
+ * in the same cases as pc_solver_restore.
  */
 pc_status pc_checkpoint_label(const void *data, size_t length, char **label, pc_error **error);
 
@@ -2366,19 +2377,20 @@ pc_status pc_solver_statistics(const pc_solver *solver,
  * Integrates many members through the times, each from its own state and with its own parameters,
  * as a single solver would: the numbers are the same for any number of threads. The events of the
  * model are followed. With PC_AUTO and PC_DOP853, members of a model without events, constraints,
- * kept integrals, tables and explicit dependence on time are integrated side by side in vectors:
- * their last digits may differ from those of a solver, within the tolerances. With PC_AUTO,
- * members that turn out to be stiff are integrated by themselves.
+ * integrals to be kept, tables or explicit dependence on time are integrated side by side in
+ * vectors: their last digits may differ from those of a solver, within the tolerances. With
+ * PC_AUTO, members that turn out to be stiff are integrated by themselves.
  *
  * `states` has members × dim numbers, member by member, at the time t; NULL for the start of
  * the model, and then t is ignored. `parameters` has members × pc_system_parameter_count
- * numbers; NULL for the current ones of the system. The length given with NULL is 0. `options` may
- * be NULL. `threads` is the number of threads, 0 for one on each core; they have ended when this
- * returns. A member that fails is passed to the observer like any other, with what it reached, and
- * the others continue. An error that all members share, such as one in the times, is reported for
- * each. Returns PC_STOPPED if the observer stops the ensemble, and PC_LIMIT, after the members
- * that were finished, if the time limit or the pc_cancel of the system's options ends it. The
- * system may be used during the call.
+ * numbers; NULL for the current parameters of the system. The length given with NULL is 0.
+ * `options` may be NULL. `threads` is the number of threads, 0 for one on each core; all of them
+ * have ended when the call returns. A member that fails is passed to the observer like any other,
+ * with the rows that it reached, and the others continue. An error that all members share, such as
+ * one in the times, is reported for each member. Returns PC_STOPPED if the observer stops the
+ * ensemble, and PC_LIMIT if the time limit or the pc_cancel of the system's options ends it; the
+ * members that were finished have then been passed to the observer. The system may be used during
+ * the call.
  */
 pc_status pc_ensemble_run(const pc_system *system,
                           const pc_solver_options *options,

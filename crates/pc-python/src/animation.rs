@@ -1,5 +1,5 @@
-//! Pages for a browser: one with all that is known about a model, one with its motion alone; and the panels
-//! of a picture.
+//! Pages for a browser: one with everything that is known about a model, and one with its motion alone; and the panels of a
+//! picture.
 
 use pc_report::picture::{Content, Panel, Picture, Scale, Wanted};
 use pc_report::{ColumnKind, Columns, Recording, Samples, Scene, animation, report};
@@ -79,7 +79,7 @@ fn drawn(panel: Panel) -> Drawn {
 
 #[pymethods]
 impl SystemCore {
-    /// The page of a motion; `None` if there is nothing to be drawn.
+    /// The page of a motion; `None` if there is nothing to draw.
     #[pyo3(name = "_animation_page")]
     fn animation_page(&self, py: Python<'_>, recorded: Recorded) -> PyResult<Option<String>> {
         let record = Recording::from(recorded);

@@ -20,7 +20,7 @@ use pyo3::types::PyType;
 
 use crate::notation::in_python;
 
-/// What can go wrong below Python.
+/// The errors that can occur below Python.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Error {
     #[error(transparent)]
@@ -120,7 +120,8 @@ fn of_model(py: Python<'_>, error: &ModelError) -> PyErr {
     }
 }
 
-/// The exception for an error of a run, in words of the package where the program has words of its own.
+/// The exception for an error of a run; where the terms of the program differ from those of the package, the latter are
+/// used.
 fn of_run(py: Python<'_>, error: &RunError) -> PyErr {
     match error {
         RunError::Model(error) => of_model(py, error),

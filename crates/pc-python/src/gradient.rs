@@ -12,7 +12,8 @@ use crate::task::attended;
 
 #[pymethods]
 impl SystemCore {
-    /// The value of an objective, and its derivatives by the state at the start and by the sensitivities that are wished.
+    /// The value of an objective, and its derivatives with respect to the state at the start and to the parameters whose
+    /// sensitivities are requested.
     #[pyo3(name = "_gradient")]
     #[expect(clippy::type_complexity, reason = "a tuple for Python")]
     fn gradient(

@@ -1,10 +1,10 @@
 //! The native part of the Python package `chetaev`: models, their equations printed, systems evaluated and integrated.
 //!
-//! It converts and delegates; the package in `python/` presents what it returns, and documents it for users. Read `error`, the
+//! This crate converts and delegates; the package in `python/` presents what it returns, and documents it for users. Read `error`, the
 //! exceptions, and `notation`, the names of options in their messages; `task`, work that Ctrl-C ends; `model`, a model and what is printed
 //! of it; `system`, its compiled equations, with `evaluation` at states and at arrays of states, and with `quantities` besides the rates,
-//! from `mechanics`; then `motion`, `dense`, `stepper`, `sweep`, `gradient` and `lyapunov`, integrations, all with the settings in
-//! `plan`; `linear`, the motions near a state; `animation`, pages; and `exchange`, robots in URDF and FMUs.
+//! from `mechanics`; then `motion`, `dense`, `stepper`, `sweep`, `gradient` and `lyapunov`, integrations, all with the settings in `plan`;
+//! `linear`, the motions near a state; `animation`, pages; and `exchange`, robots in URDF and FMUs.
 
 #![expect(clippy::needless_pass_by_value, reason = "what Python gives is converted into values of our own")]
 

@@ -80,7 +80,7 @@ impl ModelCore {
         })
     }
 
-    /// The state and the inputs at rest or in steady motion with some of them free, as text and JSON.
+    /// The state and the inputs at rest or in steady motion, found with some of them free, as text and JSON.
     fn trimmed(&self, py: Python<'_>, free: Vec<String>) -> PyResult<(String, String)> {
         self.found(py, move |model, verify| {
             let trimmed = Trimmed::of(model, &free, verify, &Nobody)?;

@@ -42,7 +42,7 @@ pub(crate) struct Changes {
     verify: bool,
 }
 
-/// What an input is given: a number, or times, values and the interpolation between them.
+/// What an input is set to: a number, or times, values and the interpolation between them.
 #[derive(FromPyObject)]
 pub(crate) enum Course {
     Constant(f64),
@@ -50,7 +50,7 @@ pub(crate) enum Course {
 }
 
 impl Course {
-    /// What the input of this name is given.
+    /// What the input with this name is set to.
     pub(crate) fn given(self, name: &str) -> Result<GivenInput, Error> {
         match self {
             Course::Constant(value) => Ok(GivenInput::Constant(finite(name, value)?)),
@@ -72,7 +72,7 @@ impl Course {
     }
 }
 
-/// The form of this name.
+/// The form with this name.
 pub(crate) fn form(name: &str) -> Result<Form, Error> {
     Form::named(name).ok_or_else(|| Error::Choice {
         what: "the form",
@@ -103,8 +103,8 @@ fn absolute(given: AbsoluteTolerance) -> GivenTolerance {
     }
 }
 
-/// Compares equations that are to be returned with a second derivation. It is not an error if there can be
-/// none: `check` says why.
+/// Compares equations with a second derivation before they are returned. It is not an error if there can be no second derivation:
+/// `check` says why.
 ///
 /// # Errors
 /// [`Error::Verify`] if the derivations disagree.
@@ -123,7 +123,7 @@ pub(crate) fn renewed(model: &mut Model) -> Cancel {
 }
 
 impl ModelCore {
-    /// Does work on the model that may take long.
+    /// Does work on the model that may take a long time.
     fn attend<T: Send + 'static>(
         &self,
         py: Python<'_>,
@@ -164,7 +164,7 @@ impl ModelCore {
         Ok(ModelCore { model: Model::new(Document::from_bytes(&name, text)?), verify: true })
     }
 
-    /// The model of this name that comes with the package, `None` if there is none.
+    /// The model with this name that comes with the package; `None` if there is none.
     #[staticmethod]
     fn builtin(name: &str) -> Result<Option<ModelCore>, Error> {
         let Some(builtin) = Builtin::named(name) else { return Ok(None) };
@@ -229,7 +229,8 @@ impl ModelCore {
         self.model.parameters().map(|(name, value)| (name.to_owned(), value)).collect()
     }
 
-    /// Names of the parameters and inputs that are numbers alone: they follow neither others nor a table, and no others follow them.
+    /// Names of the parameters and inputs that are numbers alone: they depend neither on others nor on a table, and no others depend
+    /// on them.
     fn numbers(&self) -> Vec<&str> {
         let values = self.model.parameter_values();
         let is_alone = |place: usize, value: f64| {
@@ -393,7 +394,7 @@ fn language(name: &str) -> Result<Page, Error> {
     }
 }
 
-/// A number that a model may have.
+/// The number, if a model may have it.
 pub(crate) fn finite(name: &str, value: f64) -> Result<f64, Error> {
     if value.is_finite() { Ok(value) } else { Err(Error::NotFinite { what: format!("`{name}`"), value }) }
 }

@@ -101,7 +101,7 @@ fn kinds<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound<'py, PyDict>> {
     Ok(kinds)
 }
 
-/// `kept` are the values at the start of what should stay constant.
+/// `kept` are the values at the start of the quantities that should stay constant.
 fn into_dict(py: Python<'_>, run: Run, kept: Vec<f64>) -> PyResult<Bound<'_, PyDict>> {
     let (rows, width) = (run.table.len(), run.table.columns().len() - 1);
     let result = PyDict::new(py);
@@ -130,7 +130,7 @@ fn into_dict(py: Python<'_>, run: Run, kept: Vec<f64>) -> PyResult<Bound<'_, PyD
 }
 
 impl SystemCore {
-    /// The model with the values as they are now and its equations, both with these inputs.
+    /// The model with its present values, and its equations, both with these inputs.
     fn driven(&self, py: Python<'_>, inputs: Vec<(String, Course)>) -> PyResult<(Model, Derived)> {
         let (mut model, derived) = self.now();
         if inputs.is_empty() {

@@ -1,6 +1,6 @@
-//! Options in messages: they are written as the program has them, and read here as arguments of Python.
+//! Options in messages, which are written as options of the program and turned into arguments of Python here.
 
-/// Where an option has a value, or another name in Python.
+/// Options that have a value, or another name in Python.
 const PHRASES: [(&str, &str); 13] = [
     (
         "give them after the model, as in `pc derive MODEL --form hamel \"v = r*φ'\"`",

@@ -50,7 +50,7 @@ impl Absolute {
 }
 
 impl Wished {
-    /// The plan of a run of a model in a form, which `cancel` ends.
+    /// The plan for running a model in a given form; `cancel` ends the run.
     ///
     /// # Errors
     /// [`Error::Choice`] for an unknown method, and those of [`Plan::of`].
@@ -87,7 +87,7 @@ impl Wished {
     }
 }
 
-/// The limit on time of this many seconds; none for `None` and infinity.
+/// The time limit of this many seconds; none for `None` and for infinity.
 ///
 /// # Errors
 /// [`Error::LimitTime`] for a negative number, or one that is too large.

@@ -20,7 +20,7 @@ pub(crate) struct Function {
 
 #[pymethods]
 impl Function {
-    /// Its value at a state.
+    /// The value of the bracket at a state.
     fn at(&self, py: Python<'_>, t: f64, y: Vec<f64>) -> PyResult<f64> {
         let system = self.system.get();
         system.check_length(y.len())?;

@@ -61,7 +61,7 @@ impl Stepper {
         self.walk().terminal.clone()
     }
 
-    /// Continues for the time `dt` with these values of the inputs, or with those of the last step, and returns the state there. A
+    /// Continues for the time `dt` with these values of the inputs, or with those of the last step, and returns the new state. A
     /// terminal event ends the motion earlier.
     #[pyo3(signature = (dt, inputs=None))]
     fn step<'py>(
@@ -83,7 +83,7 @@ impl Stepper {
         Ok(PyArray1::from_slice(py, &walk.y))
     }
 
-    /// Sets the motion to a time and a state; those of the start unless given.
+    /// Sets the motion to a time and a state; by default those of the start.
     #[pyo3(signature = (y=None, t=None))]
     fn restart(&self, y: Option<Vec<f64>>, t: Option<f64>) -> PyResult<()> {
         let mut walk = self.walk();

@@ -38,7 +38,7 @@ impl Observer for Waiting {
     }
 }
 
-/// The values drawn for members, each from its own stream: those of `pc sweep` with the same seed.
+/// The values drawn for members, each from its own stream: the same as those of `pc sweep` with the same seed.
 #[pyfunction]
 pub(crate) fn draw<'py>(
     py: Python<'py>,
@@ -58,8 +58,8 @@ pub(crate) fn draw<'py>(
     PyArray1::from_vec(py, values).reshape([members as usize, laws.len()])
 }
 
-/// All rows of a member, as many as each of the others has: a terminal event has a row of its own, and rows that were not
-/// reached are NaN.
+/// All rows of a member, as many as every other member has: a terminal event has a row of its own, and rows that were not reached are
+/// NaN.
 fn rows_of(record: &Record, rows: usize, width: usize) -> Vec<f64> {
     let mut numbers = record.rows.clone(); // the drifts behind a single row are cut off
     numbers.truncate(rows * width);
@@ -69,9 +69,9 @@ fn rows_of(record: &Record, rows: usize, width: usize) -> Vec<f64> {
 
 #[pymethods]
 impl SystemCore {
-    /// The motions of members, whose `values` of the quantities are given one member after the other; `progress` is told occasionally
-    /// how many are done. If the sweep is to be verified, the first member, one in the middle and the last are compared with a second
-    /// derivation.
+    /// The motions of members, whose `values` of the quantities are given one member after the other; from time to time `progress` is
+    /// told how many are done. If the sweep is to be verified, the first member, one in the middle and the last are compared with a
+    /// second derivation.
     #[expect(clippy::too_many_arguments, reason = "those of Python")]
     #[pyo3(name = "_ensemble")]
     fn ensemble<'py>(

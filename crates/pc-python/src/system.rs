@@ -56,7 +56,7 @@ impl SystemCore {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A flow with the values as they are now, to be returned by [`put_back`](SystemCore::put_back).
+    /// A flow with the present values, to be returned with [`put_back`](SystemCore::put_back).
     pub(crate) fn take(&self) -> (u64, Flow) {
         let state = self.state();
         let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
@@ -68,13 +68,13 @@ impl SystemCore {
         self.spare.lock().unwrap_or_else(PoisonError::into_inner).push(flow);
     }
 
-    /// The model with the values as they are now, and its equations.
+    /// The model with the present values, and its equations.
     pub(crate) fn now(&self) -> (Model, Derived) {
         let state = self.state();
         (state.model.clone(), state.derived.clone())
     }
 
-    /// Does work that derives from the model with the values as they are now.
+    /// Does work that derives something from the model with the present values.
     pub(crate) fn derive<T: Send + 'static>(
         &self,
         py: Python<'_>,
@@ -159,7 +159,7 @@ impl SystemCore {
         self.state().derived.flow.start.clone()
     }
 
-    /// The model with the values as they are now.
+    /// The model with the present values.
     #[pyo3(name = "_model_now")]
     fn model_now(&self) -> ModelCore {
         ModelCore { model: self.state().model.clone(), verify: self.inventory.verify }

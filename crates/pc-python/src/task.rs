@@ -20,7 +20,7 @@ const STACK: usize = 8 << 20;
 /// and then on this thread.
 ///
 /// # Errors
-/// Whatever a signal or `tick` raises, at once; the work is cancelled then and ends by itself.
+/// Whatever a signal or `tick` raises, at once; the work is then cancelled and ends by itself.
 pub(crate) fn attended<T: Send + 'static>(
     py: Python<'_>,
     cancel: &Cancel,

@@ -49,7 +49,7 @@ pub enum RunError {
     Rows {
         /// The number of rows requested.
         rows: u64,
-        /// The number of numbers held in memory for each row.
+        /// How many numbers are held in memory for each row.
         numbers: u64,
         /// The memory that the rows would take.
         bytes: u64,
@@ -88,7 +88,7 @@ pub enum RunError {
         names: Vec<String>,
         /// Whether forces are discontinuous functions of the state, as dry friction is.
         jumps: bool,
-        /// The velocity that has lost its inertia, and the fraction of it that is left.
+        /// The velocity that has lost its inertia, and the fraction of the inertia that is left.
         lost_inertia: Option<(String, f64)>,
     },
     /// An integral has changed although it is proved to be conserved.
@@ -143,7 +143,7 @@ impl RunError {
         }
     }
 
-    /// What may help, if anything is known.
+    /// Advice that may help, if there is any.
     pub fn help(&self) -> Vec<String> {
         let mut help = Vec::new();
         if let RunError::Lost(_) = self {

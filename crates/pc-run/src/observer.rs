@@ -1,5 +1,4 @@
-//! Whoever is waiting for a run: they may end it, and they are told about its progress and given remarks on
-//! it.
+//! Whoever is waiting for a run: they may end the run, are told about its progress, and are given remarks on it.
 
 use std::error::Error;
 use std::sync::atomic::{AtomicBool, Ordering};

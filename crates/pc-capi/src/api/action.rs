@@ -10,7 +10,8 @@ use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, number, quoted};
 
 /// Sets a function S of time, coordinates and constants that is claimed to solve
-/// Hamilton–Jacobi's equation; pc_system_theory examines the claim. Motions do not depend on it.
+/// Hamilton–Jacobi's equation; pc_system_theory examines the claim. Motions do not depend on this
+/// function.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_action(
     model: *mut pc_model,
@@ -27,8 +28,8 @@ pub unsafe extern "C" fn pc_model_set_action(
     unsafe { draft(model, error, "pc_model_set_action", write) }
 }
 
-/// Adds a constant of the action, with a value near which the action is defined: if it cannot be
-/// proved that the action solves the equation, this is tested numerically near these values.
+/// Adds a constant of the action, with a value near which the action is defined: if no proof is
+/// found that the action solves the equation, the claim is tested numerically near these values.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_action_constant(
     model: *mut pc_model,

@@ -10,9 +10,9 @@ use crate::ffi::pointer::{text, texts};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, list, quoted};
 
-/// Adds a particle, or a rigid body if it is given an inertia: its mass, and the position of
-/// its mass centre or of a point of the body that is at rest, as expressions in the
-/// coordinates. Energy and forces follow from the bodies, so the model needs no Lagrangian.
+/// Adds a particle, or a rigid body if it is given an inertia. The mass, and the position of the
+/// mass centre or of a point of the body that is at rest, are expressions in the coordinates.
+/// Energy and forces follow from the bodies, so the model needs no Lagrangian.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_body(
     model: *mut pc_model,
@@ -55,7 +55,7 @@ pub unsafe extern "C" fn pc_model_set_body_force(
     }
 }
 
-/// Sets the torque on a rigid body, in the axes of its angular velocity.
+/// Sets the torque on a rigid body, in the axes in which its angular velocity is given.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_body_torque(
     model: *mut pc_model,
@@ -74,7 +74,7 @@ pub unsafe extern "C" fn pc_model_set_body_torque(
     }
 }
 
-/// Sets the angular velocity of a rigid body, in axes of the body. Excludes
+/// Sets the angular velocity of a rigid body, in axes of the body. It cannot be combined with
 /// pc_model_set_body_rotation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_body_angular_velocity(

@@ -14,14 +14,14 @@ use crate::ffi::status::pc_status;
 use crate::machinery::mechanics::evaluate;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
-/// Writes the value at (t, y) of the Poisson bracket in coordinates and momenta, (12), of two
+/// Writes the value at (t, y) of the Poisson bracket (12), in coordinates and momenta, of two
 /// functions,
 ///
 ///   (f, g) = ∂g/∂y_s X_s f − ∂f/∂y_s X_s g + c_rs^m ∂f/∂y_s ∂g/∂y_r y_m,
 ///
 /// so that (x_i, H) = ẋ_i and (y_s, H) = ẏ_s where nothing depends on time and there are no
 /// forces. The functions are expressions of the model in coordinates and velocities; the
-/// momenta y_s = ∂L/∂η_s are substituted. Under nonholonomic constraints it is the
+/// momenta y_s = ∂L/∂η_s are substituted. Under nonholonomic constraints the bracket is the
 /// almost-Poisson bracket of the independent momenta. Each call derives equations, as pc_system_new
 /// does.
 #[unsafe(no_mangle)]
@@ -49,7 +49,7 @@ pub unsafe extern "C" fn pc_system_bracket(
     unsafe { inside(system, error, compute) }
 }
 
-/// The bracket (f, g) as a function of t and (x, η), with the η of the state.
+/// The bracket (f, g) as a function of t and (x, η), where η are the quasi-velocities of the state.
 fn derived(inventory: &Inventory, model: &Model, f: &str, g: &str) -> Result<Evaluator, CallError> {
     if !inventory.variables.are_own() {
         let why = "the system is in other coordinates and quasi-velocities than those of the model";

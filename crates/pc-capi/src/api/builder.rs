@@ -10,11 +10,11 @@ use crate::ffi::pointer::{clear, finite, text, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, list, number, quoted};
 
-/// Makes an empty model, to be built by the calls below. Different kinds of entries may be added in
-/// any order; coordinates, quasi-velocities, parameters and so on are in the order of their calls.
-/// Expressions are those of the text model, where `x'` is the velocity of the coordinate x and `t`
-/// the time. The model is read as a whole by pc_model_check and pc_system_new, whose errors name
-/// the entry and show its expression.
+/// Makes an empty model, to be built by the calls below. Entries of different kinds may be added in
+/// any order; coordinates, quasi-velocities, parameters and so on each keep the order of their
+/// calls. Expressions are written as in the text of a model: `x'` is the velocity of the coordinate
+/// x, and `t` is the time. The model is read as a whole by pc_model_check and pc_system_new, whose
+/// errors name the entry and show its expression.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_new(
     name: *const c_char,
@@ -49,7 +49,7 @@ pub unsafe extern "C" fn pc_model_check(model: *const pc_model, error: *mut *mut
 /// Calls `write` with the draft of a model that was begun with `pc_model_new`.
 ///
 /// # Safety
-/// `model` is null or a live handle, `error` null or memory for a pointer.
+/// `model` is null or a live handle, and `error` is null or points to memory for a pointer.
 pub(crate) unsafe fn draft(
     model: *mut pc_model,
     error: *mut *mut pc_error,
@@ -64,7 +64,7 @@ pub(crate) unsafe fn draft(
     unsafe { change(model, error, change_draft) }
 }
 
-/// Adds a parameter with its value, which pc_model_set and pc_system_set_parameter change.
+/// Adds a parameter with its value, which pc_model_set and pc_system_set_parameter can change.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_parameter(
     model: *mut pc_model,
@@ -82,8 +82,8 @@ pub unsafe extern "C" fn pc_model_add_parameter(
     unsafe { draft(model, error, "pc_model_add_parameter", write) }
 }
 
-/// Adds a parameter that is an expression in the parameters before it. It changes with them until
-/// it is itself set.
+/// Adds a parameter that is an expression in the parameters before it. The new parameter changes
+/// with them until it is itself set.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_parameter_expression(
     model: *mut pc_model,
@@ -102,8 +102,8 @@ pub unsafe extern "C" fn pc_model_add_parameter_expression(
 }
 
 /// Adds a first-order state with its value at the start and its rate, which is an expression in
-/// time, coordinates, velocities and states. It is integrated with the motion and comes after the
-/// velocities in the state; it is not part of the frame.
+/// time, coordinates, velocities and states. The first-order state is integrated with the motion
+/// and comes after the velocities in the state; it is not part of the frame.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_state(
     model: *mut pc_model,
@@ -123,8 +123,9 @@ pub unsafe extern "C" fn pc_model_add_state(
     unsafe { draft(model, error, "pc_model_add_state", write) }
 }
 
-/// Sets the acceleration of gravity, along the axes of the positions of bodies, as expressions in
-/// the parameters and t: it acts on the mass centres of all bodies and is included in the energy.
+/// Sets the components of the acceleration of gravity, along the axes in which the positions of
+/// bodies are given, as expressions in the parameters and t. Gravity acts on the mass centres of
+/// all bodies and is included in the energy.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_gravity(
     model: *mut pc_model,
@@ -209,8 +210,8 @@ pub unsafe extern "C" fn pc_model_add_quasi_velocity(
     unsafe { draft(model, error, "pc_model_add_quasi_velocity", write) }
 }
 
-/// Sets the velocity of a coordinate as an expression affine in the quasi-velocities, (3). Call it
-/// for every coordinate, or for none.
+/// Sets the velocity of a coordinate as an expression affine in the quasi-velocities, (3). Call
+/// this function for every coordinate, or for none.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_kinematics(
     model: *mut pc_model,
@@ -269,8 +270,8 @@ pub unsafe extern "C" fn pc_model_set_bracket(
     unsafe { draft(model, error, "pc_model_set_bracket", write) }
 }
 
-/// Adds a constraint, which says that the expression, in coordinates or in velocities, vanishes. If
-/// it is not affine in the velocities, declare this with pc_model_set_constraint_kind.
+/// Adds a constraint: the expression, in coordinates or in velocities, must vanish. If it is not
+/// affine in the velocities, declare this with pc_model_set_constraint_kind.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_constraint(
     model: *mut pc_model,

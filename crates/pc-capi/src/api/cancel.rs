@@ -9,9 +9,9 @@ use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{clear, free, write};
 use crate::ffi::status::pc_status;
 
-/// A handle that ends the derivations of systems whose pc_system_options contain it, and
-/// integrations of these systems. Any number of threads may use it at the same time. Free it
-/// with pc_cancel_free.
+/// A handle that ends the derivations of systems whose pc_system_options contain it, and the
+/// integrations of these systems. Any number of threads may use it at the same time. Free it with
+/// pc_cancel_free.
 pub struct pc_cancel {
     pub(crate) cancel: Cancel,
 }
@@ -30,9 +30,9 @@ pub unsafe extern "C" fn pc_cancel_new(cancel: *mut *mut pc_cancel, error: *mut 
     unsafe { entry(error, new) }
 }
 
-/// Ends derivations and integrations with PC_LIMIT: those under way end soon, later ones as soon as
-/// they begin. It takes no lock and allocates nothing: it is the one function that a signal handler
-/// may call. NULL is allowed.
+/// Ends derivations and integrations with PC_LIMIT: those under way end soon, and later ones as
+/// soon as they begin. It takes no lock and allocates nothing: it is the one function that a signal
+/// handler may call. NULL is allowed.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_cancel_request(cancel: Option<&pc_cancel>) {
     if let Some(handle) = cancel {
@@ -40,7 +40,7 @@ pub extern "C" fn pc_cancel_request(cancel: Option<&pc_cancel>) {
     }
 }
 
-/// 1 after pc_cancel_request, else 0; 0 for NULL.
+/// Returns 1 after pc_cancel_request, else 0; 0 for NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_cancel_is_requested(cancel: Option<&pc_cancel>) -> c_int {
     cancel.map_or(0, |handle| handle.cancel.is_cancelled().into())

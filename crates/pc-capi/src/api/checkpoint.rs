@@ -16,14 +16,14 @@ use crate::machinery::engine::Integration;
 use crate::machinery::event_set::Followed;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
-/// Writes time and state of a solver as bytes, to be freed with pc_bytes_free and read by
+/// Writes the time and state of a solver as bytes, to be freed with pc_bytes_free and read by
 /// pc_solver_restore, possibly in another run of the program. `label` says what the checkpoint
 /// belongs to; NULL means the empty text.
 ///
 /// A multistep method depends on earlier steps, so this solver restarts here too, at order 1:
 /// from here on, it and the solvers restored from the checkpoint give the same numbers to the
-/// last bit. Events of the model are part of the checkpoint; a solver with events of
-/// pc_solver_add_event returns PC_UNSUPPORTED.
+/// last bit. Events of the model are part of the checkpoint; for a solver with events added by
+/// pc_solver_add_event the call returns PC_UNSUPPORTED.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_checkpoint(
     solver: *mut pc_solver,
@@ -59,7 +59,7 @@ pub unsafe extern "C" fn pc_solver_checkpoint(
 /// It continues exactly as the original solver did if the system, the parameters and the options
 /// are the same. `options` may be NULL. Returns PC_INVALID_CHECKPOINT unless the bytes are exactly
 /// what pc_solver_checkpoint wrote, for a model with the same names and equations; the values of
-/// parameters may differ. The statistics of the solver count from here.
+/// parameters may differ. The statistics of the solver count the work from the checkpoint on.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_restore(
     system: *const pc_system,
@@ -97,8 +97,8 @@ pub unsafe extern "C" fn pc_solver_restore(
     }
 }
 
-/// Writes the label of a checkpoint, to be freed with pc_string_free. PC_INVALID_CHECKPOINT as
-/// for pc_solver_restore.
+/// Writes the label of a checkpoint, to be freed with pc_string_free. Returns PC_INVALID_CHECKPOINT
+/// in the same cases as pc_solver_restore.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_checkpoint_label(
     data: *const c_void,
@@ -133,7 +133,8 @@ fn unmarked(label: &str) -> (Option<u64>, &str) {
     read.unwrap_or((None, label))
 }
 
-/// The number of bytes in front of those handed out; they hold the length of the latter.
+/// The number of bytes in front of the data that are handed out; these bytes hold the length of the
+/// data.
 const HEAD: usize = size_of::<usize>();
 
 /// A copy for C.

@@ -12,8 +12,8 @@ use crate::ffi::pointer::{clear, free, handle, room, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::engine::Integration;
 
-/// A motion as a function of time. It never changes, so that any number of threads may use it.
-/// Free it with pc_dense_free.
+/// A motion as a function of time. It never changes, so any number of threads may use it. Free it
+/// with pc_dense_free.
 pub struct pc_dense {
     motion: DenseOutput,
     dim: usize,
@@ -22,7 +22,7 @@ pub struct pc_dense {
 /// Writes the derivative of y of the given order, 0 for y itself, at a time in the last internal
 /// step, from the polynomial of the method, whose degree is the order of that step. The step
 /// extends from step_time − last_step to step_time of pc_statistics, but not beyond an event; there
-/// is no such step before the first one and after a reset. y satisfies the constraints; its
+/// is no such step before the first step or just after a reset. y satisfies the constraints; its
 /// derivatives are those of the polynomial.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_interpolate(
@@ -44,9 +44,9 @@ pub unsafe extern "C" fn pc_solver_interpolate(
 }
 
 /// Integrates to the time t, which must differ from that of the solver, as pc_solver_advance
-/// does, and records the motion from the previous time of the solver: (order + 2) × dim numbers for
-/// each internal step. `dense` is also made with PC_EVENT and PC_STOPPED, and then ends where the
-/// integration did.
+/// does, and records the motion from the previous time of the solver on; this takes (order + 2) ×
+/// dim numbers for each internal step. `dense` is also made when PC_EVENT or PC_STOPPED is
+/// returned; it then ends where the integration ended.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_run_dense(
     solver: *mut pc_solver,
@@ -79,8 +79,8 @@ type Value = fn(&DenseOutput, f64) -> Result<Vec<f64>, InputError>;
 /// Writes this value at t.
 ///
 /// # Safety
-/// `dense` is null or a live handle, `y` null or memory for `y_length` numbers, `error` null or
-/// memory for a pointer.
+/// `dense` is null or a live handle, `y` is null or points to memory for `y_length` numbers, and
+/// `error` is null or points to memory for a pointer.
 unsafe fn at(
     dense: *const pc_dense,
     value: Value,
@@ -101,9 +101,9 @@ unsafe fn at(
     unsafe { entry(error, evaluate) }
 }
 
-/// Writes y(t). At an event this is the state after it, except at the very end, where it is
-/// the limit from before. Inside a step it deviates from the constraints by the error of a step;
-/// pc_system_project moves it onto them.
+/// Writes y(t). At an event this is the state after the event, except at the very end of the
+/// motion, where it is the limit from before. Inside a step the state deviates from the constraints
+/// by the error of a step; pc_system_project moves it onto the constraints.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_dense_eval(
     dense: *const pc_dense,
@@ -116,7 +116,8 @@ pub unsafe extern "C" fn pc_dense_eval(
     unsafe { at(dense, DenseOutput::evaluate, t, (y, y_length), error) }
 }
 
-/// Writes the rate of y at t. It may jump by the error of a step where one step meets the next.
+/// Writes the rate of y at t. The rate may jump by the error of a step where one step meets the
+/// next.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_dense_rate(
     dense: *const pc_dense,
@@ -141,7 +142,8 @@ pub extern "C" fn pc_dense_t_begin(dense: Option<&pc_dense>) -> f64 {
     span(dense).0
 }
 
-/// The time at which the motion ends, before its beginning if it runs back in time; NaN for NULL.
+/// The time at which the motion ends, which precedes its beginning if the motion runs backwards in
+/// time; NaN for NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_dense_t_end(dense: Option<&pc_dense>) -> f64 {
     span(dense).1

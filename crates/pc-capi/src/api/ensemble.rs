@@ -27,19 +27,19 @@ use crate::machinery::system::pc_system;
 /// The result of a member of an ensemble. The structure may grow at the end.
 #[repr(C)]
 pub struct pc_member {
-    /// Its number, from 0.
+    /// The number of the member, counted from 0.
     pub number: usize,
-    /// PC_OK; PC_EVENT if a terminal event ended it; else why it failed.
+    /// PC_OK, PC_EVENT if a terminal event ended the motion, or the status of the failure.
     pub status: pc_status,
-    /// Why it failed, else NULL.
+    /// Why the member failed; NULL if it did not.
     pub message: *const c_char,
     /// The output times that the member reached, as many as `rows`; the time of a terminal event is
     /// the last one.
     pub times: *const f64,
-    /// The states at these times, one after the other, each of `dim` numbers. Like `times`,
+    /// The states at these times, one after the other, each of `dim` numbers. Like `times`, it is
     /// NULL where there are none.
     pub states: *const f64,
-    /// The number of these times and states, also if the member failed.
+    /// The number of these times and states, even if the member failed.
     pub rows: usize,
     /// The length of a state.
     pub dim: usize,
@@ -47,7 +47,7 @@ pub struct pc_member {
 
 /// Receives each member in order, on the thread of the call; the data to which `member` points are
 /// valid during the call. Returns 0 to continue; anything else ends the ensemble with PC_STOPPED.
-/// Otherwise as pc_observer.
+/// Otherwise it is like pc_observer.
 pub type pc_member_observer =
     Option<unsafe extern "C" fn(member: *const pc_member, user: *mut c_void) -> c_int>;
 
@@ -189,19 +189,20 @@ fn row(all: &[f64], member: usize, length: usize) -> &[f64] {
 /// Integrates many members through the times, each from its own state and with its own parameters,
 /// as a single solver would: the numbers are the same for any number of threads. The events of the
 /// model are followed. With PC_AUTO and PC_DOP853, members of a model without events, constraints,
-/// kept integrals, tables and explicit dependence on time are integrated side by side in vectors:
-/// their last digits may differ from those of a solver, within the tolerances. With PC_AUTO,
-/// members that turn out to be stiff are integrated by themselves.
+/// integrals to be kept, tables or explicit dependence on time are integrated side by side in
+/// vectors: their last digits may differ from those of a solver, within the tolerances. With
+/// PC_AUTO, members that turn out to be stiff are integrated by themselves.
 ///
 /// `states` has members × dim numbers, member by member, at the time t; NULL for the start of
 /// the model, and then t is ignored. `parameters` has members × pc_system_parameter_count
-/// numbers; NULL for the current ones of the system. The length given with NULL is 0. `options` may
-/// be NULL. `threads` is the number of threads, 0 for one on each core; they have ended when this
-/// returns. A member that fails is passed to the observer like any other, with what it reached, and
-/// the others continue. An error that all members share, such as one in the times, is reported for
-/// each. Returns PC_STOPPED if the observer stops the ensemble, and PC_LIMIT, after the members
-/// that were finished, if the time limit or the pc_cancel of the system's options ends it. The
-/// system may be used during the call.
+/// numbers; NULL for the current parameters of the system. The length given with NULL is 0.
+/// `options` may be NULL. `threads` is the number of threads, 0 for one on each core; all of them
+/// have ended when the call returns. A member that fails is passed to the observer like any other,
+/// with the rows that it reached, and the others continue. An error that all members share, such as
+/// one in the times, is reported for each member. Returns PC_STOPPED if the observer stops the
+/// ensemble, and PC_LIMIT if the time limit or the pc_cancel of the system's options ends it; the
+/// members that were finished have then been passed to the observer. The system may be used during
+/// the call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_ensemble_run(
     system: *const pc_system,

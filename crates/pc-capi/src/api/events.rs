@@ -37,7 +37,7 @@ pub(crate) fn direction(value: c_int) -> Result<(Direction, &'static str), CallE
 }
 
 /// Adds an event, which occurs where the expression `when` passes through zero in the given
-/// direction, a pc_direction. If `terminal` is not 0 it ends an integration with PC_EVENT.
+/// direction, a pc_direction. If `terminal` is not 0, the event ends an integration with PC_EVENT.
 /// Simultaneous events are handled in the order in which they were added.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_event(
@@ -63,7 +63,7 @@ pub unsafe extern "C" fn pc_model_add_event(
 
 /// Adds a reset to an event: where the event occurs, the coordinate, quasi-velocity or
 /// velocity `x'` called `variable` takes the value of the expression. All resets of an event take
-/// effect together and use the state before it.
+/// effect together and use the state before the event.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_event_reset(
     model: *mut pc_model,
@@ -88,7 +88,7 @@ pub extern "C" fn pc_system_event_count(system: Option<&pc_system>) -> usize {
     count(system, |inventory| inventory.events.len())
 }
 
-/// The name of an event, from 0; NULL beyond the last.
+/// The name of an event, counted from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_event_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.event_names)
@@ -105,13 +105,13 @@ pub extern "C" fn pc_system_event_direction(system: Option<&pc_system>, index: u
     })
 }
 
-/// 1 if an event ends the integration, else 0.
+/// Returns 1 if an event ends the integration, else 0.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_event_is_terminal(system: Option<&pc_system>, index: usize) -> c_int {
     of_event(system, index, |event| event.is_terminal().into())
 }
 
-/// 1 if an event resets the state, else 0.
+/// Returns 1 if an event resets the state, else 0.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_event_resets(system: Option<&pc_system>, index: usize) -> c_int {
     of_event(system, index, |event| event.resets().into())
@@ -123,8 +123,8 @@ fn of_event(system: Option<&pc_system>, index: usize, known: impl FnOnce(&Event)
 }
 
 /// Writes the functions of the events at (t, y), as many as pc_system_event_count: an event
-/// occurs where its function passes through zero. Where a function has no value, the number is
-/// not finite.
+/// occurs where its function passes through zero. Where a function has no value, its entry is not a
+/// finite number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_events(
     system: *const pc_system,
@@ -146,8 +146,8 @@ pub unsafe extern "C" fn pc_system_events(
     unsafe { inside(system, error, evaluate) }
 }
 
-/// Turns the state y before an event, number `event` from 0, into the state after it. An event
-/// without resets leaves y unchanged.
+/// Turns the state y before an event, number `event` counted from 0, into the state after it. An
+/// event without resets leaves y unchanged.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_event_reset(
     system: *const pc_system,

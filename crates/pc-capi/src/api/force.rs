@@ -13,11 +13,12 @@ use crate::ffi::user_data::{User, pc_destroy};
 use crate::machinery::controller::Controller;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
-/// Writes the external forces at (t, y) to q: one for each that was declared, in that order, so
-/// `q_length` is pc_system_force_count. y is the state of the system; in the canonical form it
-/// contains momenta. Returns 0; a positive number where the forces are not defined, so that a
-/// smaller step may help; a negative number to give up. A force left unwritten is NaN, and treated
-/// like a positive return value. It must return: no exceptions, no longjmp.
+/// Writes the external forces at (t, y) to q: one for each that was declared, in the order of the
+/// declarations, so `q_length` is pc_system_force_count. y is the state of the system; in the
+/// canonical form it contains momenta. Returns 0 on success; a positive number where the forces are
+/// not defined, so that a smaller step may help; a negative number to give up. A force left
+/// unwritten is NaN and is treated like a positive return value. It must return normally: no
+/// exceptions, no longjmp.
 pub type pc_force_function = Option<
     unsafe extern "C" fn(
         t: f64,
@@ -30,7 +31,7 @@ pub type pc_force_function = Option<
 >;
 
 /// Writes the derivatives of the external forces at (t, y), all of them, column-major: ∂q_i/∂y_j
-/// to `dq[i + j*e]` for e forces, so `dq_length` is e * `y_length`. Otherwise as
+/// to `dq[i + j*e]` for e forces, so `dq_length` is e * `y_length`. Otherwise it is like
 /// pc_force_function.
 pub type pc_force_jacobian = Option<
     unsafe extern "C" fn(
@@ -44,9 +45,9 @@ pub type pc_force_jacobian = Option<
 >;
 
 /// Declares that a force computed by a function of yours acts on a quasi-velocity, or on a
-/// coordinate if the model declares no quasi-velocities. It is added to the other forces that act
-/// there. The function belongs to the system, not to the model: set it with pc_system_set_force. An
-/// unknown name is reported by pc_model_check and pc_system_new.
+/// coordinate if the model declares no quasi-velocities. This force is added to the other forces
+/// that act there. The function belongs to the system, not to the model: set it with
+/// pc_system_set_force. An unknown name is reported by pc_model_check and pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_external_force(
     model: *mut pc_model,
@@ -68,24 +69,26 @@ pub extern "C" fn pc_system_force_count(system: Option<&pc_system>) -> usize {
     system.map_or(0, |system| system.inventory.forces.len())
 }
 
-/// The name of the quasi-velocity on which an external force acts, from 0; NULL beyond the last.
+/// The name of the quasi-velocity on which an external force acts, counted from 0; NULL beyond the
+/// last.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_force_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     system.map_or(std::ptr::null(), |system| nth(&system.inventory.forces, index))
 }
 
 /// Sets the function that computes the external forces, all at once: the Q_s of the declared
-/// quasi-velocities. Until then nothing that needs them can be evaluated. `jacobian` may be NULL:
-/// the derivatives of the forces, and only these, are then difference quotients.
+/// quasi-velocities. Until it is set, nothing that needs these forces can be evaluated. `jacobian`
+/// may be NULL: the derivatives of the forces, and only these, are then computed as difference
+/// quotients.
 ///
 /// Copies, kernels and solvers made from the system afterwards share the functions and `user`;
 /// those made before keep the functions they had. The functions are called on whichever thread
-/// evaluates, and so on several at the same time if several threads use copies. They may call any
-/// function on other handles, and on the same system those that return names (pc_system_..._name)
-/// and sizes.
+/// evaluates; if several threads use copies, several calls may run at the same time. They may call
+/// any function on other handles, and on the same system those that return names
+/// (pc_system_..._name) and sizes.
 ///
 /// `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else
-/// when the last handle that shares it is freed or given another function. It must not use a
+/// when the last handle that shares it is freed or given another function. `destroy` must not use a
 /// handle that is being freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_set_force(

@@ -67,9 +67,9 @@ pub unsafe extern "C" fn pc_model_add_input_table(
 }
 
 /// Adds an input whose table is a column of a file of comma-separated numbers, the first line of
-/// which holds the names of the columns; otherwise as pc_model_add_input_table. `time` is the name
-/// of the column of times, NULL for "t" or, without one, the first column. The path is relative to
-/// the working directory at the time of the call.
+/// which holds the names of the columns; otherwise this is like pc_model_add_input_table. `time` is
+/// the name of the column of times, NULL for "t" or, if there is no such column, for the first one.
+/// The path is relative to the working directory at the time of the call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_input_file(
     model: *mut pc_model,
@@ -105,7 +105,7 @@ pub unsafe extern "C" fn pc_model_add_input_file(
     unsafe { draft(model, error, "pc_model_add_input_file", write) }
 }
 
-/// The word for how a table is read; "linear" where it is NULL.
+/// The word that says how a table is interpolated; "linear" where it is NULL.
 ///
 /// # Safety
 /// `word` is null or text.

@@ -13,10 +13,10 @@ use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, list, quoted};
 
 /// Adds a body that is attached to another, or to the world if `parent` is null, by a joint of this
-/// kind: fixed, revolute, prismatic, screw, cylindrical, universal, planar, spherical, free. Its
-/// origin is the point of the joint. Inertia, force and torque are set as for other bodies, start
-/// values by pc_model_add_coordinate and pc_model_add_quasi_velocity with the names that the joint
-/// gives, such as `NAME` and `NAME'` for a revolute one.
+/// kind: fixed, revolute, prismatic, screw, cylindrical, universal, planar, spherical, free. The
+/// origin of the body is the point of the joint. Inertia, force and torque are set as for other
+/// bodies, start values by pc_model_add_coordinate and pc_model_add_quasi_velocity with the names
+/// that the joint gives, such as `NAME` and `NAME'` for a revolute one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_jointed_body(
     model: *mut pc_model,
@@ -134,7 +134,7 @@ pub unsafe extern "C" fn pc_model_set_joint_pitch(
 }
 
 /// Sets the rotation from the axes of a joint to those of the parent: the 9 entries of its
-/// matrix, row by row. Excludes pc_model_set_joint_turns.
+/// matrix, row by row. It cannot be combined with pc_model_set_joint_turns.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_joint_rotation(
     model: *mut pc_model,
@@ -151,8 +151,9 @@ pub unsafe extern "C" fn pc_model_set_joint_rotation(
     unsafe { draft(model, error, "pc_model_set_joint_rotation", write) }
 }
 
-/// Sets the same rotation as a sequence of turns about axes: `axes` has a letter x, y or z for each
-/// of the `length` angles; each turn is about an axis that the turns before it have moved.
+/// Sets the rotation of pc_model_set_joint_rotation as a sequence of turns about axes: `axes` has a
+/// letter x, y or z for each of the `length` angles; each turn is about an axis as moved by the
+/// turns before it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_joint_turns(
     model: *mut pc_model,

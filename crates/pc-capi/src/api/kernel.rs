@@ -18,7 +18,7 @@ use crate::machinery::system::{Inner, holding, pc_system};
 /// f(t, y) for an integrator of your own: the context of pc_kernel_rhs and pc_kernel_jacobian.
 /// Free it with pc_kernel_free.
 ///
-/// It holds workspace, so each thread needs its own, and two calls at the same time are not
+/// It holds workspace, so each thread needs its own kernel, and two calls at the same time are not
 /// safe; in return it takes no locks.
 pub struct pc_kernel {
     dim: usize,
@@ -99,9 +99,9 @@ pub unsafe extern "C" fn pc_kernel_set_parameters(
 /// Writes ydot = f(t, y), both of pc_system_dim numbers, which is not checked; they must not
 /// share memory. `kernel` is a pc_kernel of this thread.
 ///
-/// Returns 0; 1 where f cannot be evaluated and a smaller step may help; −1 where no step
-/// helps. pc_system_rhs at the same (t, y) says why. It is the function that GSL's odeiv2
-/// takes, with the kernel as `params`.
+/// Returns 0 on success, 1 where f cannot be evaluated but a smaller step may help, and −1 where no
+/// step helps. pc_system_rhs at the same (t, y) says why. It has the form of the functions that
+/// GSL's odeiv2 takes, with the kernel as `params`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_kernel_rhs(t: f64, y: *const f64, ydot: *mut f64, kernel: *mut c_void) -> c_int {
     // SAFETY: a kernel, whose motion lives, and disjoint arrays of its dimension, as the
@@ -117,8 +117,8 @@ pub unsafe extern "C" fn pc_kernel_rhs(t: f64, y: *const f64, ydot: *mut f64, ke
     }
 }
 
-/// Writes ∂f/∂y, dim × dim and column-major; otherwise as pc_kernel_rhs. The first call compiles
-/// it.
+/// Writes ∂f/∂y, dim × dim and column-major; otherwise it is like pc_kernel_rhs. The first call
+/// compiles it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_kernel_jacobian(
     t: f64,
@@ -130,10 +130,10 @@ pub unsafe extern "C" fn pc_kernel_jacobian(
     unsafe { evaluate(y, jacobian, kernel, |dim| dim * dim, |motion, y, j| motion.jacobian(t, y, j)) }
 }
 
-/// Writes f(t, y) of `count` states, which are given one after the other in `states`, to `rates`,
-/// in the same order. Otherwise as pc_kernel_rhs: returns 1 if f cannot be evaluated at some
-/// states, whose rates are then NaN; −1 at a state where no step helps, and the rates of the states
-/// after it are not written.
+/// Writes f(t, y) for `count` states, which are given one after the other in `states`, to `rates`,
+/// in the same order. Otherwise it is like pc_kernel_rhs: it returns 1 if f cannot be evaluated at
+/// some states, whose rates are then NaN; it returns −1 at a state where no step helps, and does
+/// not write the rates of the states after it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_kernel_rhs_many(
     t: f64,
@@ -172,8 +172,8 @@ pub unsafe extern "C" fn pc_kernel_rhs_many(
 }
 
 /// # Safety
-/// `kernel` is null or a live `pc_kernel` that no other thread uses, `y` null or of the length of
-/// its state, `target` null or of length `len`.
+/// `kernel` is null or a live `pc_kernel` that no other thread uses, `y` is null or has the length
+/// of its state, and `target` is null or has length `len`.
 #[inline]
 unsafe fn evaluate(
     y: *const f64,

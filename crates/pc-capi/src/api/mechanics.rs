@@ -25,7 +25,7 @@ impl Inner {
         Ok((self.mechanics.as_mut().ok_or(MISSING)?, &mut self.field, &mut self.room))
     }
 
-    /// Writes the state (x, η) of the state y to `room.state`.
+    /// Writes the state y, converted to (x, η), to `room.state`.
     pub(crate) fn read_quasi_velocities(
         &mut self,
         inventory: &Inventory,
@@ -47,7 +47,7 @@ impl Inner {
 
 /// Writes the mass matrix M = ∂²L/∂η∂η at (t, y), k × k for the k quasi-velocities of the state,
 /// so `length` is k*k; k is pc_system_dim less pc_system_coordinate_count and
-/// pc_system_state_count. Rows for multipliers are not part of it. The first call derives M, as
+/// pc_system_state_count. Rows for multipliers are not part of M. The first call derives M, as
 /// pc_system_new derives equations.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_mass_matrix(
@@ -192,9 +192,9 @@ pub unsafe extern "C" fn pc_system_structure_coefficients(
 }
 
 /// Writes the residual of the equations for ydot in the form expected by codes for implicit
-/// equations F(t, y, ẏ) = 0: ẋ − b η − b_0, then M η̇ − r, without dividing by M. With multipliers,
-/// whose reactions are eliminated, the second part is M times the error of η̇; in the canonical
-/// form the residual is ẏ − f. The first call derives, as pc_system_new does.
+/// equations F(t, y, ẏ) = 0: ẋ − b η − b_0, then M η̇ − r, without dividing by M. If there are
+/// multipliers, whose reactions are eliminated, the second part is M times the error of η̇; in the
+/// canonical form the residual is ẏ − f. The first call derives equations, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_residual(
     system: *const pc_system,

@@ -165,7 +165,7 @@ pub extern "C" fn pc_builtin_count() -> usize {
     Builtin::all().count()
 }
 
-/// The name of such a model, from 0; NULL beyond the last. Static.
+/// The name of a model that comes with the library, counted from 0; NULL beyond the last. Static.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_builtin_name(index: usize) -> *const c_char {
     static NAMES: OnceLock<Vec<CString>> = OnceLock::new();
@@ -205,7 +205,7 @@ pub unsafe extern "C" fn pc_model_free(model: *mut pc_model) {
 /// Calls `change` with the content of the model.
 ///
 /// # Safety
-/// `model` is null or a live handle, `error` null or memory for a pointer.
+/// `model` is null or a live handle, and `error` is null or points to memory for a pointer.
 pub(crate) unsafe fn change(
     model: *mut pc_model,
     error: *mut *mut pc_error,

@@ -9,8 +9,8 @@ use crate::ffi::pointer::{handle, text, write};
 use crate::ffi::status::pc_status;
 use crate::machinery::system::{Inventory, pc_system};
 
-/// Writes the index of a component of the state, from 0, by its name. PC_NOT_FOUND if no
-/// component has this name.
+/// Writes the index of a component of the state, counted from 0, by its name. Returns PC_NOT_FOUND
+/// if no component has this name.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_find(
     system: *const pc_system,
@@ -22,7 +22,7 @@ pub unsafe extern "C" fn pc_system_find(
     unsafe { find(system, name, index, error, "component of the state", |inventory| &inventory.names) }
 }
 
-/// Writes the index of a parameter or input, from 0, by its name, as pc_system_find.
+/// Writes the index of a parameter or input, counted from 0, by its name, as pc_system_find does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_find_parameter(
     system: *const pc_system,
@@ -34,7 +34,7 @@ pub unsafe extern "C" fn pc_system_find_parameter(
     unsafe { find(system, name, index, error, "parameter", |inventory| &inventory.parameters) }
 }
 
-/// Writes the index of an observable, from 0, by its name, as pc_system_find.
+/// Writes the index of an observable, counted from 0, by its name, as pc_system_find does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_find_observable(
     system: *const pc_system,

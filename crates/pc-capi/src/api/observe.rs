@@ -9,8 +9,8 @@ use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 /// Writes the observables at (t, y), as many as pc_system_observable_count: the integrals, the
 /// energy, the outputs.
 ///
-/// Where an observable has no value, the number is not finite; the same holds for an observable
-/// that contains accelerations where external forces cannot be computed.
+/// Where an observable has no value, its entry is not a finite number; the same holds for an
+/// observable that contains accelerations where external forces cannot be computed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_observe(
     system: *const pc_system,
@@ -41,8 +41,8 @@ fn all_finite(what: &'static str, values: &[f64]) -> Result<(), CallError> {
     }
 }
 
-/// Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: the
-/// first of the observables, which should stay constant.
+/// Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: these are
+/// the first of the observables, and should stay constant.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_integrals(
     system: *const pc_system,
@@ -67,7 +67,7 @@ pub unsafe extern "C" fn pc_system_integrals(
     unsafe { inside(system, error, observe) }
 }
 
-/// Writes the energy y_s η_s − L at (t, y). No function of external forces is called.
+/// Writes the energy y_s η_s − L at (t, y). No function that computes external forces is called.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_energy(
     system: *const pc_system,

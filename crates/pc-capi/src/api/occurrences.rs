@@ -17,10 +17,10 @@ use crate::machinery::engine::{Integration, Observer};
 use crate::machinery::event_set::Own;
 
 /// Receives each event where it occurs, by its number among the events of the solver, with the
-/// states before and after it, which are valid during the call. Among simultaneous events each has
-/// the state that it found and the state that it left. Returns 0 to continue; anything else ends
-/// the call with PC_STOPPED, or with PC_EVENT where the event is terminal. Otherwise as
-/// pc_observer.
+/// states before and after it, which are valid during the call. Each of several simultaneous events
+/// is given with the state that it found and the state that it left. Returns 0 to continue;
+/// anything else ends the call with PC_STOPPED, or with PC_EVENT where the event is terminal.
+/// Otherwise it is like pc_observer.
 pub type pc_event_observer = Option<
     unsafe extern "C" fn(
         event: usize,
@@ -34,19 +34,20 @@ pub type pc_event_observer = Option<
 
 /// Writes g(t, y), which passes through zero where the event occurs. Returns 0; anything else
 /// ends the integration with PC_INTEGRATION, as does a value that is not finite or not
-/// written. It should depend only on its arguments and be smooth. It must return: no exceptions, no
-/// longjmp.
+/// written. It should depend only on its arguments and be smooth. It must return normally: no
+/// exceptions, no longjmp.
 pub type pc_event_function = Option<
     unsafe extern "C" fn(t: f64, y: *const f64, y_length: usize, value: *mut f64, user: *mut c_void) -> c_int,
 >;
 
-/// Turns the state y before the event into the state after it. Otherwise as pc_event_function.
+/// Turns the state y before the event into the state after it. Otherwise it is like
+/// pc_event_function.
 pub type pc_event_reset =
     Option<unsafe extern "C" fn(t: f64, y: *mut f64, y_length: usize, user: *mut c_void) -> c_int>;
 
 /// Sets the observer that is called for each event from now on, in place of the previous one; NULL
-/// for none. `user` has to live until another observer is set or the solver is freed. The observer
-/// is called during the calls that integrate, on their thread.
+/// for none. `user` must stay valid until another observer is set or the solver is freed. The
+/// observer is called during the calls that integrate, on their thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_observe_events(
     solver: *mut pc_solver,
@@ -58,9 +59,10 @@ pub unsafe extern "C" fn pc_solver_observe_events(
     unsafe { observe(solver, observer, User { data: user, destroy: None }, error) }
 }
 
-/// The same, with a `user` that the solver owns: `destroy`, unless NULL, is called with it exactly
-/// once: by this call if it fails or `observer` is NULL, else when another observer takes its place
-/// or the solver is freed. It must not use the solver while the solver is being freed.
+/// The same as pc_solver_observe_events, with a `user` that the solver owns. `destroy`, unless
+/// NULL, is called with `user` exactly once: by this call if it fails or `observer` is NULL, else
+/// when another observer takes its place or the solver is freed. `destroy` must not use the solver
+/// while the solver is being freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_set_event_observer(
     solver: *mut pc_solver,
@@ -96,11 +98,11 @@ unsafe fn observe(
 /// Follows an event of your program, numbered after those of the model and those added before: it
 /// occurs where `function` passes through zero in the given direction, a pc_direction. There
 /// `reset`, unless NULL, changes the state, which is then projected onto the constraints; if
-/// `terminal` is not 0 the event ends the call with PC_EVENT. Must be called before the first step.
-/// `name` is for messages.
+/// `terminal` is not 0 the event ends the call with PC_EVENT. The call must be made before the
+/// first step. `name` is for messages.
 ///
 /// `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else by
-/// pc_solver_free. It must not use the solver.
+/// pc_solver_free. `destroy` must not use the solver.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_add_event(
     solver: *mut pc_solver,
@@ -140,7 +142,7 @@ pub extern "C" fn pc_solver_event_count(solver: Option<&pc_solver>) -> usize {
     solver.map_or(0, |solver| names(solver).len())
 }
 
-/// The name of an event, from 0; NULL beyond the last.
+/// The name of an event, counted from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_solver_event_name(solver: Option<&pc_solver>, index: usize) -> *const c_char {
     solver.map_or(std::ptr::null(), |solver| nth(&names(solver), index))

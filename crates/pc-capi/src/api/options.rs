@@ -25,7 +25,7 @@ pub enum pc_form {
     /// by multipliers, this form and those below give PC_INCONSISTENT_MODEL, unless
     /// pc_model_add_independent says which velocities are independent.
     PC_REDUCED = 2,
-    /// The same in momenta: Lie–Poisson equations.
+    /// The same equations in momenta: Lie–Poisson equations.
     PC_LIE_POISSON = 3,
     /// Poincaré's equations, in quasi-velocities that are orthonormal in the kinetic metric.
     PC_ORTHONORMAL = 4,
@@ -43,15 +43,15 @@ pub struct pc_system_options {
     pub form: c_int,
     /// Reserved; must be 0.
     pub reserved: c_int,
-    /// Maximum number of bytes that the expressions of a derivation may take, by estimate; 0, the
+    /// Maximum number of bytes, by estimate, that the expressions of a derivation may take; 0, the
     /// default, for 4 GiB. Beyond it a call returns PC_LIMIT. The limit applies separately to
-    /// pc_system_new and to each later call that derives; so do the next two.
+    /// pc_system_new and to each later call that derives; so do the next two fields.
     pub memory_limit: u64,
     /// Maximum time in seconds, positive, for a derivation and for each call of a solver or an
     /// ensemble of the system; 0, the default, for no limit.
     pub time_limit: f64,
     /// The handle with which derivations and integrations can be ended; NULL, the default, for
-    /// none. It may be freed when pc_system_new has returned.
+    /// none. The handle may be freed when pc_system_new has returned.
     pub cancel: *const pc_cancel,
 }
 
@@ -121,11 +121,11 @@ pub enum pc_method {
     PC_BDF = 1,
     /// The explicit Runge–Kutta method of order 8 of Dormand and Prince, for systems that are
     /// not stiff at tolerances of 1e-6 and below: the fastest where the equations are short. It has
-    /// no sensitivities, and no iteration, linear solver or highest order to choose.
+    /// no sensitivities, and offers no choice of iteration, linear solver or highest order.
     PC_DOP853 = 2,
     /// Taylor's method of adaptive order and step, for systems that are not stiff: the fastest at
     /// tolerances of 1e-8 and below, and the one that follows a motion to within rounding errors.
-    /// It needs equations that are solved in expressions, without tables and without forces from
+    /// It needs equations that are solved symbolically, without tables and without forces from
     /// functions of the program.
     PC_TAYLOR = 3,
     /// PC_DOP853 where the motion is not stiff, PC_BDF where stiffness is detected. With
@@ -155,7 +155,7 @@ pub enum pc_linear_solver {
     PC_LINEAR_DENSE = 1,
     /// Sparse LU factors.
     PC_LINEAR_SPARSE = 2,
-    /// GMRES without a matrix.
+    /// Matrix-free GMRES.
     PC_LINEAR_KRYLOV = 3,
 }
 
@@ -169,13 +169,13 @@ pub struct pc_solver_options {
     pub method: c_int,
     /// A pc_iteration; PC_ITERATION_OF_METHOD by default.
     pub iteration: c_int,
-    /// A pc_linear_solver; PC_LINEAR_AUTOMATIC by default. Only for Newton's iteration.
+    /// A pc_linear_solver; PC_LINEAR_AUTOMATIC by default. It matters only with Newton's iteration.
     pub linear_solver: c_int,
     /// Highest order of the method; 0, the default, for the highest it has.
     pub max_order: c_int,
     /// Relative tolerance, positive; 1e-9 by default.
     pub relative_tolerance: f64,
-    /// Absolute tolerance of all components, positive; 1e-12 by default.
+    /// Absolute tolerance for all components, positive; 1e-12 by default.
     pub absolute_tolerance: f64,
     /// Absolute tolerances, one for each component, copied; NULL, the default, for the one above.
     pub absolute_tolerances: *const f64,
@@ -186,17 +186,16 @@ pub struct pc_solver_options {
     /// Length of the first step, positive in both directions of time; 0, the default, for an
     /// estimate.
     pub initial_step: f64,
-    /// Least length of a step; 0, the default, for none.
+    /// Minimum length of a step; 0, the default, for none.
     pub min_step: f64,
-    /// Largest length of a step; 0, the default, for none.
+    /// Maximum length of a step; 0, the default, for none.
     pub max_step: f64,
     /// A time beyond which the equations are never evaluated; infinity, the default, for none.
     pub stop_time: f64,
-    /// Number of equal parts of each step, at least 1, at whose ends the functions of events are
-    /// sampled that are not expressions in the state alone (those of your program, and those that
-    /// are read through constraints, momenta or tables); they are sampled more closely where the
-    /// values leave doubt; 4 by default. Between two such times an even number of zeros may be
-    /// missed.
+    /// Number of equal parts of each step, at least 1; 4 by default. Functions of events that are
+    /// not expressions in the state alone (those of your program, and those that are read through
+    /// constraints, momenta or tables) are sampled at the ends of the parts, and more closely where
+    /// the values leave doubt. Between two such times an even number of zeros may be missed.
     pub samples_per_step: u32,
     /// Reserved; must be 0.
     pub reserved: u32,

@@ -47,7 +47,7 @@ pub(crate) unsafe fn slices<'a>(
     }
 }
 
-/// The same for the case that a check fails or an array is empty.
+/// The same as [`slices`], for the case in which a check fails or an array is empty.
 ///
 /// # Safety
 /// As for [`slices`].
@@ -243,8 +243,9 @@ pub unsafe extern "C" fn pc_system_jvp(
 
 /// Writes ∂f/∂p, dim × pc_system_parameter_count and column-major, so `length` is their product.
 /// Each derivative is taken with all other parameters fixed, even those that are expressions in
-/// this one; for an input with a table it is that with respect to the value of the input. Returns
-/// PC_UNSUPPORTED unless pc_model_differentiate was called, and with external forces.
+/// this one; for an input with a table, the derivative is taken with respect to the value of the
+/// input. Returns PC_UNSUPPORTED if pc_model_differentiate was not called, or if there are external
+/// forces.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_parameter_jacobian(
     system: *const pc_system,
@@ -272,8 +273,8 @@ pub unsafe extern "C" fn pc_system_parameter_jacobian(
 }
 
 /// Writes ∂f/∂t, which Rosenbrock's methods need; it has the length of the state. The first call
-/// derives it, as pc_system_new derives equations, unless f is free of t. Returns PC_UNSUPPORTED
-/// with external forces, whose ∂/∂t is unknown, and with inputs that have tables.
+/// derives it, as pc_system_new derives equations, unless f does not contain t. Returns
+/// PC_UNSUPPORTED if there are external forces, whose ∂/∂t is unknown, or inputs that have tables.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_time_derivative(
     system: *const pc_system,

@@ -11,9 +11,9 @@ use crate::machinery::engine::Integration;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 /// Writes the derivative of the start of the model with respect to parameter number `parameter`,
-/// from 0: start values may be expressions in parameters. The call derives the equations. Returns
-/// PC_INCONSISTENT_MODEL where there is no start for nearby values of the parameter, for an input
-/// with a table, and for a parameter that is an expression in others.
+/// counted from 0: start values may be expressions in parameters. The call derives the equations.
+/// Returns PC_INCONSISTENT_MODEL where there is no start for nearby values of the parameter, for an
+/// input with a table, and for a parameter that is an expression in others.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_start_by_parameter(
     system: *const pc_system,
@@ -53,12 +53,13 @@ pub unsafe extern "C" fn pc_system_start_by_parameter(
 }
 
 /// Adds, before the first step, a sensitivity that a solver integrates with the motion: the
-/// derivative of the state with respect to parameter number `parameter`, from 0. `start` is the
-/// derivative of the start, which pc_system_start_by_parameter gives for that of the model; NULL,
-/// of length 0, for a start that does not depend on the parameter. Needs pc_model_differentiate.
-/// Sensitivities jump where an event of the model resets the state; with an event of the program
-/// that does so, the call returns PC_INVALID_ARGUMENT. For an input with a table it is the
-/// derivative with respect to a shift of all its values.
+/// derivative of the state with respect to parameter number `parameter`, counted from 0. `start` is
+/// the derivative of the start, which pc_system_start_by_parameter gives for the start of the
+/// model; NULL, of length 0, for a start that does not depend on the parameter. Requires that
+/// pc_model_differentiate was called. Sensitivities jump where an event of the model resets the
+/// state; with an event of the program that does so, the call returns PC_INVALID_ARGUMENT. For an
+/// input with a table, the sensitivity is the derivative with respect to a shift of all values of
+/// the table.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_add_sensitivity(
     solver: *mut pc_solver,
@@ -79,8 +80,8 @@ pub unsafe extern "C" fn pc_solver_add_sensitivity(
     unsafe { integrate(solver, error, add) }
 }
 
-/// Writes sensitivity number `number`, from 0 in the order in which they were added, at the
-/// time of the solver; it has the length of the state.
+/// Writes sensitivity number `number`, counted from 0 in the order in which sensitivities were
+/// added, at the time of the solver; it has the length of the state.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_sensitivity(
     solver: *const pc_solver,

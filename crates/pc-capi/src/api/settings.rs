@@ -1,5 +1,5 @@
-//! The settings of a model besides its mechanics: description, start, kinds of constraints, how
-//! it is run.
+//! The settings of a model besides its mechanics: its description, its start, the kinds of its
+//! constraints, and how it is run.
 
 use std::ffi::c_char;
 
@@ -22,7 +22,7 @@ pub unsafe extern "C" fn pc_model_set_description(
     unsafe { put(model, error, "pc_model_set_description", (Section::Heading, "description"), description) }
 }
 
-/// Sets the reference from which the model comes.
+/// Sets the reference to the source of the model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_reference(
     model: *mut pc_model,
@@ -56,7 +56,7 @@ pub unsafe extern "C" fn pc_model_set_start(
     unsafe { change(model, error, set) }
 }
 
-/// Changes a start value to an expression in parameters; otherwise as pc_model_set_start.
+/// Changes a start value to an expression in parameters; otherwise this is like pc_model_set_start.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_start_expression(
     model: *mut pc_model,
@@ -103,8 +103,8 @@ pub unsafe extern "C" fn pc_model_set_start_time(
     unsafe { set_number(model, error, "pc_model_set_start_time", &[("t_start", t)]) }
 }
 
-/// Sets the time to which the program `pc` runs the model. It is written to the text, as are the
-/// settings of the next five functions; solvers take pc_solver_options instead.
+/// Sets the time until which the program `pc` runs the model. This time is written to the text, as
+/// are the settings of the next five functions; solvers take pc_solver_options instead.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_end_time(
     model: *mut pc_model,

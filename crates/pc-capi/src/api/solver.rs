@@ -36,8 +36,8 @@ impl pc_solver {
 }
 
 /// Receives the state at each output time. Returns 0 to continue; anything else ends the run
-/// with PC_STOPPED. It may call any function on other handles, and must return: no exceptions,
-/// no longjmp.
+/// with PC_STOPPED. It may call any function on other handles, and must return normally: no
+/// exceptions, no longjmp.
 pub type pc_observer =
     Option<unsafe extern "C" fn(t: f64, y: *const f64, y_length: usize, user: *mut c_void) -> c_int>;
 
@@ -100,7 +100,7 @@ pub unsafe extern "C" fn pc_solver_free(solver: *mut pc_solver) {
 /// Calls `body` with the integration and the length of its state.
 ///
 /// # Safety
-/// `solver` is null or a live handle, `error` null or memory for a pointer.
+/// `solver` is null or a live handle, and `error` is null or points to memory for a pointer.
 pub(crate) unsafe fn integrate(
     solver: *const pc_solver,
     error: *mut *mut pc_error,
@@ -118,7 +118,7 @@ pub(crate) unsafe fn integrate(
 /// Makes a solver continue with the current parameters and inputs of the system: it restarts
 /// at its current state, at order 1. This is how inputs change between two calls of
 /// pc_solver_advance. The system must be that of the solver, or one of the same model. Returns
-/// PC_UNSUPPORTED with events of pc_solver_add_event.
+/// PC_UNSUPPORTED if the solver has events added by pc_solver_add_event.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_take_parameters(
     solver: *mut pc_solver,
@@ -141,10 +141,10 @@ pub unsafe extern "C" fn pc_solver_take_parameters(
 }
 
 /// Integrates to the time t, in the direction of the first step, and writes the state there.
-/// With PC_EVENT and PC_STOPPED it is the state where the integration ended, and
+/// When PC_EVENT or PC_STOPPED is returned, it is the state where the integration ended, and
 /// pc_solver_time gives the time; the next call continues from there. After a failure
-/// pc_solver_time and pc_solver_state give what was reached. PC_LIMIT is such a failure; it is due
-/// to the time limit or the pc_cancel of the system's options.
+/// pc_solver_time and pc_solver_state give the time and state that were reached. PC_LIMIT is such a
+/// failure; it is due to the time limit or the pc_cancel of the system's options.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_advance(
     solver: *mut pc_solver,
@@ -166,7 +166,7 @@ pub unsafe extern "C" fn pc_solver_advance(
 
 /// Takes one internal step in the direction of `towards`, or the part of it before an event, and
 /// writes the time at its end, which may lie beyond `towards`, and the state there; both are also
-/// written with PC_EVENT and PC_STOPPED.
+/// written when PC_EVENT or PC_STOPPED is returned.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_step(
     solver: *mut pc_solver,
@@ -194,8 +194,7 @@ pub unsafe extern "C" fn pc_solver_step(
 /// Integrates through the times, which increase or decrease throughout, and calls `observer`
 /// at each with the state, which is valid during the call, and with `user`. Returns PC_STOPPED if
 /// the observer stops it. At the time of an event the observer receives the state after the event;
-/// a terminal event brings the last call of the observer, at the time of the event, and PC_EVENT is
-/// returned.
+/// at a terminal event the observer is called for the last time, and PC_EVENT is returned.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_run(
     solver: *mut pc_solver,

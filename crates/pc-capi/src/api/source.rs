@@ -27,7 +27,7 @@ pub enum pc_format {
 
 /// Derives and prints the equations, as `pc derive` does: constraints, kinematics, brackets,
 /// equations, energy and reactions, or momenta and Hamiltonian, and the operations of one
-/// right-hand side. Where constraints are imposed by multipliers, it shows the equations in
+/// right-hand side. Where constraints are imposed by multipliers, the text shows the equations in
 /// independent velocities. `format` is a pc_format. Parameters have the values of the model. Free
 /// the text with pc_string_free.
 #[unsafe(no_mangle)]
@@ -71,11 +71,11 @@ fn printed(inventory: &Inventory, model: &Model, page: Page) -> Result<String, C
 /// names, runs of other characters one `_`, with none at the ends; `n_` precedes a leading digit,
 /// `_` follows a keyword of C. The source has the right-hand side, its Jacobian, the mass matrix,
 /// the energy, the integrals and the outputs in terms of independent quasi-velocities, or of
-/// momenta if these are in the state of the system, and explains its use at its head. External
-/// forces are parameters that come after the others; their names are `Q_` followed by that of their
-/// quasi-velocity, and they are zero until they are set. If `t_end` is finite, it can be compiled
-/// with -DNAME_MAIN (in capitals) to a program that integrates from the start of the model to that
-/// time. Free both texts with pc_string_free.
+/// momenta if these are in the state of the system, and begins with a comment that explains its
+/// use. External forces are parameters that come after the others; the name of each is `Q_`
+/// followed by the name of its quasi-velocity, and they are zero until they are set. If `t_end` is
+/// finite, the source can be compiled with -DNAME_MAIN (in capitals) into a program that integrates
+/// from the start of the model to that time. Free both texts with pc_string_free.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_emit_c(
     system: *const pc_system,

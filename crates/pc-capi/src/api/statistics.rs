@@ -10,7 +10,7 @@ use crate::ffi::error::pc_error;
 use crate::ffi::pointer::handle;
 use crate::ffi::status::pc_status;
 
-/// Counters since the start of an integration, and data of its last internal step. The structure
+/// Counters since the start of an integration, and data on its last internal step. The structure
 /// may grow at the end.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,7 +27,7 @@ pub struct pc_statistics {
     pub nonlinear_iterations: u64,
     /// Failures of the nonlinear solver.
     pub nonlinear_failures: u64,
-    /// Factorisations, or renewals of the preconditioner.
+    /// Factorisations, or updates of the preconditioner.
     pub linear_setups: u64,
     /// Iterations of the Krylov solver.
     pub linear_iterations: u64,
@@ -39,12 +39,12 @@ pub struct pc_statistics {
     pub next_step: f64,
     /// End of the last step, which may lie beyond the time of the solver.
     pub step_time: f64,
-    /// Steps shortened to end where the explicit dependence on time shows something that the
-    /// motion so far gives no hint of: the beginning of a pulse, a jump.
+    /// Steps shortened to end where the equations, as explicit functions of time, change in a way
+    /// of which the motion so far gives no hint, as at a jump or at the beginning of a pulse.
     pub limited_steps: u64,
     /// Steps that PC_AUTO made with PC_BDF.
     pub implicit_steps: u64,
-    /// How often PC_AUTO changed its method.
+    /// How often PC_AUTO switched between its methods.
     pub changes: u64,
     /// Time at which PC_DOP853 or PC_AUTO first found the motion to be stiff; NaN if never.
     pub stiff_from: f64,

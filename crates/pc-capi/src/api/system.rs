@@ -14,8 +14,8 @@ use crate::ffi::status::pc_status;
 use crate::machinery::system::{Inner, Inventory, count, holding, inside, name, pc_system};
 
 /// Derives and compiles the equations of a model. `options` may be NULL. This takes from
-/// milliseconds to seconds (for a hundred bodies); other functions are fast unless they say
-/// that they derive.
+/// milliseconds to seconds (the latter for a hundred bodies); other functions are fast unless they
+/// say that they derive.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_new(
     model: *const pc_model,
@@ -126,32 +126,32 @@ pub extern "C" fn pc_system_reaction_count(system: Option<&pc_system>) -> usize 
     count(system, |inventory| inventory.reactions.len())
 }
 
-/// The name of a component of the state, from 0; NULL beyond the last.
+/// The name of a component of the state, counted from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.names)
 }
 
-/// The name of a parameter, from 0; NULL beyond the last.
+/// The name of a parameter, counted from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_parameter_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.parameters)
 }
 
-/// The name of an observable, from 0; NULL beyond the last.
+/// The name of an observable, counted from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_observable_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.observables)
 }
 
-/// The name of a constraint that projection maintains, from 0; NULL beyond the last.
+/// The name of a constraint that projection maintains, counted from 0; NULL beyond the last.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_constraint_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     name(system, index, |inventory| &inventory.constraints)
 }
 
-/// The name of a reaction, `λ_` followed by the name of its constraint, from 0; NULL beyond the
-/// last.
+/// The name of a reaction, `λ_` followed by the name of its constraint, counted from 0; NULL beyond
+/// the last.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_system_reaction_name(system: Option<&pc_system>, index: usize) -> *const c_char {
     let place = system.and_then(|system| system.inventory.reactions.get(index).copied());
@@ -180,9 +180,9 @@ pub unsafe extern "C" fn pc_system_start(
 }
 
 /// Writes the absolute tolerance of each component of the state with which the program `pc` would
-/// run the system from its start to t_end: that of the text if it gives one, else min(1e-12,
-/// relative·s) for a component of scale s at the start, where f is evaluated once, but no less than
-/// the rounding error of the largest component. pc_solver_options takes them as
+/// run the system from its start to t_end: the tolerance in the text if it gives one, else
+/// min(1e-12, relative·s) for a component of scale s at the start, where f is evaluated once, but
+/// no less than the rounding error of the largest component. pc_solver_options takes them as
 /// absolute_tolerances.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_absolute_tolerances(
@@ -253,8 +253,8 @@ pub unsafe extern "C" fn pc_system_set_parameters(
     unsafe { holding(system, error, set) }
 }
 
-/// Sets one parameter, by its index; parameters that are expressions in it follow, unless they
-/// have themselves been set. Otherwise as pc_system_set_parameters.
+/// Sets one parameter, by its index; parameters that are expressions in it change with it, unless
+/// they have themselves been set. Otherwise this is like pc_system_set_parameters.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_set_parameter(
     system: *mut pc_system,

@@ -1,4 +1,4 @@
-//! Printing the analysis of motions, made without integrating them.
+//! Printing an analysis of motions that is made without integrating them.
 
 use std::ffi::{c_char, c_int};
 
@@ -20,7 +20,7 @@ const MOST_DEGREE: usize = 6;
 /// Prints an analysis of the motions that is made without integrating them, as `pc theory` does:
 /// momenta and their brackets, Casimirs, integrals, cyclic displacements, invariant measure,
 /// Chaplygin's multiplier, Hamilton-Jacobi's equation, steady motions, Routh's reduction. Each
-/// claim is marked proved, disproved or open. The integrals sought are polynomials of a `degree`
+/// claim is marked as proved, disproved or open. The integrals sought are polynomials of a `degree`
 /// from 1 to 6 in the velocities, whose coefficients are polynomials in the coordinates times 1 or
 /// one of the `functions`, expressions of the model; the list may be empty. `format` is a
 /// pc_format. Parameters have the values of the model. Everything is derived again, which takes

@@ -10,8 +10,8 @@ use crate::ffi::status::pc_status;
 /// Adds a quasi-velocity to those of the model, for systems of the form PC_HAMEL: a linear
 /// form in the velocities x' or the quasi-velocities of the model, such as "r*f'". Where fewer are
 /// given than there are independent quasi-velocities, the missing ones are taken from those of the
-/// model. Each is also an output. Errors in its definition are reported by pc_model_check and
-/// pc_system_new.
+/// model. Each added quasi-velocity is also an output. Errors in its definition are reported by
+/// pc_model_check and pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_give_quasi_velocity(
     model: *mut pc_model,
@@ -30,8 +30,8 @@ pub unsafe extern "C" fn pc_model_give_quasi_velocity(
 }
 
 /// Chooses a velocity as independent; there must be as many choices as there are velocities that
-/// the constraints leave free. Where multipliers would impose the constraints, systems then have
-/// equations without multipliers. The name is that of a quasi-velocity, or x' where there are none.
+/// the constraints leave free. Systems whose equations would otherwise contain multipliers then
+/// have equations without them. The name is that of a quasi-velocity, or x' where there are none.
 /// Without such choices, printed equations and source use the velocities that make them shortest. A
 /// wrong choice is reported by pc_system_new.
 #[unsafe(no_mangle)]

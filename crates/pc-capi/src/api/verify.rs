@@ -15,11 +15,12 @@ use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 /// Derives the equations of the model a second time, by a route that shares only the text of the
 /// model with the first, and compares both at `states` random states on the constraints, for the
 /// current parameters: velocities, accelerations or rates of momenta, reactions, the energy and its
-/// rate of change, integrals and outputs. 0 states mean 100. `text` says how closely they agree and
-/// what was not compared, on separate lines; it may be NULL, and is freed with pc_string_free.
-/// External forces are taken to be 0. Returns PC_DISAGREEMENT, with the quantity and both its
-/// values, if the two differ, which is a defect of the library; PC_UNSUPPORTED if there is no
-/// second derivation for this model. The call takes as long as pc_system_new.
+/// rate of change, integrals and outputs. A value of 0 stands for 100 states. `text` says how
+/// closely they agree and what was not compared, on separate lines; it may be NULL, and is freed
+/// with pc_string_free. External forces are taken to be 0. Returns PC_DISAGREEMENT, with the
+/// quantity and both its values, if the two derivations differ, which is a defect of the library;
+/// PC_UNSUPPORTED if there is no second derivation for this model. The call takes as long as
+/// pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_verify(
     system: *const pc_system,
@@ -40,7 +41,7 @@ pub unsafe extern "C" fn pc_system_verify(
     unsafe { inside(system, error, compare) }
 }
 
-/// As pc_system_verify, at one state of the system, such as that of a solver: its time, and the
+/// As pc_system_verify, but at one state of the system, such as that of a solver: its time, and the
 /// state that pc_solver_advance has written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_verify_at(

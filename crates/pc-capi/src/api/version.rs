@@ -12,7 +12,7 @@ pub const PC_VERSION_PATCH: u32 = 0;
 /// any library of the same number that is not older than its header.
 pub const PC_ABI_VERSION: u32 = 0;
 
-/// The version of the library, such as "0.1.0". Static.
+/// The version of the library, such as "0.1.0". The text is static.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_version() -> *const c_char {
     const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "\0");

@@ -58,26 +58,26 @@ pub extern "C" fn pc_error_status(error: Option<&pc_error>) -> pc_status {
 }
 
 /// The message, in UTF-8, never NULL; it lives as long as the error. For a model it shows the line
-/// at fault and what would be correct, in several lines of text. Empty for NULL.
+/// at fault and what would be correct, on several lines. Empty for NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_error_message(error: Option<&pc_error>) -> *const c_char {
     error.map_or(c"".as_ptr(), |error| error.message.as_ptr())
 }
 
-/// The line of the model text at fault, from 1; 0 if there is none, and for NULL.
+/// The line of the model text at fault, counted from 1; 0 if there is none, and for NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_error_line(error: Option<&pc_error>) -> usize {
     place(error).line
 }
 
-/// The column at which the text at fault begins, in characters from 1; 0 if there is none, and
-/// for NULL.
+/// The column at which the text at fault begins, in characters counted from 1; 0 if there is none,
+/// and for NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_error_column(error: Option<&pc_error>) -> usize {
     place(error).column
 }
 
-/// The byte at which the text at fault begins, from 0; 0 if there is none, and for NULL.
+/// The byte at which the text at fault begins, counted from 0; 0 if there is none, and for NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_error_offset(error: Option<&pc_error>) -> usize {
     place(error).offset

@@ -15,7 +15,7 @@ pub(crate) unsafe fn handle<'a, T>(handle: *const T, what: &'static str) -> Resu
     unsafe { handle.as_ref() }.ok_or_else(|| CallError::Null { what })
 }
 
-/// The `expected` numbers at `data`, where according to the caller there are `found`.
+/// The `expected` numbers at `data`, where, according to the caller, there are `found` numbers.
 ///
 /// # Safety
 /// Null, or `found` numbers that nobody changes during the call.
@@ -33,8 +33,8 @@ pub(crate) unsafe fn numbers<'a>(
     Ok(unsafe { slice::from_raw_parts(data, expected) })
 }
 
-/// Memory for `expected` numbers at `data`, all set to NaN; according to the caller there is room
-/// for `found`.
+/// Memory for `expected` numbers at `data`, all set to NaN; according to the caller, there is room
+/// for `found` numbers.
 ///
 /// # Safety
 /// Null, or room for `found` numbers that nobody else uses during the call.

@@ -2,8 +2,8 @@
 
 use std::ffi::c_void;
 
-/// Frees the data to which the `user` of a function points. It must return: no exceptions, no
-/// longjmp.
+/// Frees the data to which the `user` of a function points. It must return normally: no exceptions,
+/// no longjmp.
 pub type pc_destroy = Option<unsafe extern "C" fn(user: *mut c_void)>;
 
 /// The argument of functions of the program, which is destroyed together with them.

@@ -7,7 +7,7 @@ use ::pc_model::{Document, ModelError, Source, UnknownParameter, UnknownStart};
 
 use crate::ffi::call_error::CallError;
 
-/// Entries in the order in which they came, each in a section of the text.
+/// Entries in the order in which they were added, each in a section of the text.
 #[derive(Clone, Debug)]
 pub(crate) struct Draft {
     name: String,

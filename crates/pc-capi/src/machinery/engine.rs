@@ -37,9 +37,9 @@ pub(crate) fn engine(
 /// A solver's record of its events; its size does not depend on how often they occur.
 #[derive(Default)]
 pub(crate) struct EventLog {
-    /// How often each has occurred.
+    /// How often each event has occurred.
     pub(crate) counts: Vec<u64>,
-    /// The last occurrence of each.
+    /// The last occurrence of each event.
     pub(crate) last: Vec<Option<Occurrence>>,
     /// The terminal event that ended the last call.
     pub(crate) terminal: Option<usize>,
@@ -78,7 +78,7 @@ pub(crate) struct Integration {
     events: Followed,
     options: Options,
     sensitivities: Sensitivities,
-    /// The work before the last restart.
+    /// The work done before the last restart.
     earlier: Statistics,
     pub(crate) record: EventLog,
 }
@@ -122,7 +122,7 @@ impl Integration {
         })
     }
 
-    /// S at the current time, column-major, and the number of columns.
+    /// The sensitivities S at the current time, column-major, and the number of their columns.
     pub(crate) fn sensitivities(&mut self) -> Result<(Vec<f64>, usize), SolveError> {
         let matrix = self.engine.stepper().columns()?;
         Ok((matrix, self.sensitivities.len()))
@@ -217,7 +217,7 @@ impl Integration {
         self.engine.interpolate(t, order)
     }
 
-    /// The result of a call that ends this way.
+    /// The result of a call, given how the integration ended.
     pub(crate) fn ended(&mut self, ending: Ending) -> Result<(), CallError> {
         match ending {
             Ending::Completed => Ok(()),

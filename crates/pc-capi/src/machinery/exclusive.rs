@@ -13,8 +13,8 @@ const BROKEN: u8 = 2;
 
 /// A value that one call at a time may use, and that no call may use after one has panicked.
 ///
-/// Like a mutex for which nobody waits; releasing it takes no atomic exchange, whose cost shows in
-/// an evaluation of a few nanoseconds.
+/// Like a mutex for which nobody waits; releasing it takes no atomic exchange, whose cost would be
+/// noticeable in an evaluation that takes a few nanoseconds.
 pub(crate) struct Exclusive<T> {
     state: AtomicU8,
     value: UnsafeCell<T>,
@@ -31,7 +31,7 @@ impl<T> Exclusive<T> {
         Exclusive { state: AtomicU8::new(FREE), value: UnsafeCell::new(value) }
     }
 
-    /// Gives access to the value, if nobody else uses it.
+    /// Gives access to the value, if nobody else is using it.
     #[inline]
     pub(crate) fn take(&self) -> Result<Use<'_, T>, CallError> {
         match self.state.compare_exchange(FREE, IN_USE, Ordering::Acquire, Ordering::Relaxed) {

@@ -24,8 +24,8 @@ pub(crate) struct Direct {
     room: usize,
 }
 
-/// Largest scratch on the stack, in numbers; beyond it an evaluation is long enough to hide an
-/// allocation.
+/// Largest scratch space on the stack, in numbers; an evaluation that needs more takes long enough
+/// to hide the cost of an allocation.
 const ON_STACK: usize = 4096;
 
 impl Direct {
@@ -101,7 +101,7 @@ impl Direct {
         right && version.is_multiple_of(2) && self.version.load(Ordering::Relaxed) == version
     }
 
-    /// The same, provided that nothing is published during the call.
+    /// The same as [`rates`](Direct::rates), provided that nothing is published during the call.
     ///
     /// # Safety
     /// As for [`rates`](Direct::rates), with memory for [`room`](Direct::room) numbers at `room`.

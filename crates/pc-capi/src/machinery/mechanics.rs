@@ -16,7 +16,7 @@ pub(crate) struct Mechanics {
     pub(crate) operators: usize,
     /// b η + b_0, then r, then ż; the external forces are further inputs.
     pub(crate) right: Evaluator,
-    /// Whether M η̇ = r are all the equations, without multipliers and momenta.
+    /// Whether M η̇ = r are all the equations, with neither multipliers nor momenta.
     pub(crate) complete: bool,
 }
 

@@ -30,7 +30,7 @@ impl MotionField {
         }
     }
 
-    /// A number that distinguishes the field from those with other equations or names.
+    /// A number that distinguishes the field from fields with other equations or names.
     pub(crate) fn digest(&self) -> u64 {
         self.motion().digest()
     }
@@ -42,7 +42,7 @@ impl MotionField {
         }
     }
 
-    /// The machine code of f, if f is nothing else.
+    /// The machine code of f, if f consists of machine code alone.
     pub(crate) fn machine_code(&mut self) -> Option<MachineCode> {
         match self {
             MotionField::Free(motion) => motion.machine_code(),

@@ -20,7 +20,7 @@ use crate::machinery::motion_field::MotionField;
 
 /// The equations of motion of a model, compiled: ẏ = f(t, y). Free it with pc_system_free.
 pub struct pc_system {
-    /// Dropped first: a `destroy` of the program may read names.
+    /// Dropped first, because a `destroy` function of the program may read names.
     pub(crate) inner: Exclusive<Inner>,
     /// The machine code of f, which needs a live field but no lock; it is known after the first
     /// evaluation.
@@ -77,7 +77,7 @@ impl Inventory {
 #[derive(Clone)]
 pub(crate) struct Inner {
     pub(crate) field: MotionField,
-    /// The values of the parameters, some of which are expressions in others.
+    /// The values of the parameters, some of which are expressions in other parameters.
     pub(crate) values: Parameters,
     /// The time and state at which the integrals maintained by projection take their values.
     kept_at: (f64, Vec<f64>),
@@ -96,9 +96,9 @@ pub(crate) struct Inner {
 /// Room for intermediate results, so that only the first calls allocate.
 #[derive(Clone, Default)]
 pub(crate) struct Room {
-    /// As long as the state.
+    /// Its length is that of the state.
     pub(crate) state: Vec<f64>,
-    /// As long as each call needs it.
+    /// Its length is what each call needs.
     values: Vec<f64>,
 }
 
@@ -187,13 +187,13 @@ impl pc_system {
         Ok(pc_system { inventory: Arc::clone(&self.inventory), direct, inner: Exclusive::new(inner) })
     }
 
-    /// The machine code of f, where f is known to be nothing else.
+    /// The machine code of f, if f is known to consist of machine code alone.
     #[inline]
     pub(crate) fn direct(&self) -> Option<&Direct> {
         self.direct.get()?.as_ref()
     }
 
-    /// Lets later evaluations use the machine code alone, where f is nothing else.
+    /// Lets later evaluations use the machine code directly, if f consists of machine code alone.
     pub(crate) fn prepare_direct(&self, inner: &mut Inner) {
         self.direct.get_or_init(|| Direct::of(&mut inner.field));
     }
@@ -253,7 +253,7 @@ impl Inner {
 /// Calls `body` with the inventory of the system and with the part that one call at a time may use.
 ///
 /// # Safety
-/// `system` is null or a live handle, `error` null or memory for a pointer.
+/// `system` is null or a live handle, and `error` is null or points to memory for a pointer.
 pub(crate) unsafe fn inside(
     system: *const pc_system,
     error: *mut *mut pc_error,

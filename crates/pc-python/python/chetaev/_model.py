@@ -181,7 +181,7 @@ class Model:
         return MappingProxyType(self._core.simulation())
 
     def check(self, **settings: Any) -> Check:
-        """What can be said about the model before it is run: rank, closure, constraints, what is conserved, what is stable.
+        """What can be said about the model before it is run: rank, closure, constraints, what is conserved and what is stable.
 
         The equations are compared with a second derivation.
 
@@ -208,9 +208,9 @@ class Model:
         ----------
         form : str, optional
             ``"poincare"``, ``"canonical"``, ``"lagrange"``, ``"voronets"``, ``"reduced"``, ``"lie-poisson"``, ``"orthonormal"`` or
-            ``"hamel"``; the form in the text unless given, or else Poincaré's.
+            ``"hamel"``; by default the form in the text, or else Poincaré's.
         width : int
-            Number of columns of a line.
+            The number of characters that fit on a line.
         inline : bool
             Whether definitions of the model are written out.
         **settings
@@ -271,9 +271,10 @@ class Model:
         version : int
             The version of FMI, 2 or 3.
         solver : str, optional
-            How it integrates on its own: ``"dop853"``, ``"radau5"`` (stiff), or ``"rk4"`` with fixed steps of the length ``step``.
+            How the unit integrates on its own: ``"dop853"``, ``"radau5"`` (stiff), or ``"rk4"`` with fixed steps of the length
+            ``step``.
         compiled : bool
-            Whether it has a binary for this machine beside the sources, which requires a C compiler.
+            Whether the unit contains a binary for this machine besides the sources, which requires a C compiler.
         **settings
             As for :meth:`system`.
         """
@@ -329,7 +330,7 @@ class Model:
         cyclic: str | None = None,
         **settings: Any,
     ) -> RootLocus:
-        """The eigenvalues of :meth:`linearize` for each value of a parameter or start value, followed from one to the next.
+        """The eigenvalues of :meth:`linearize` for each value of a parameter or start value, followed from one value to the next.
 
         Examples
         --------
@@ -350,7 +351,7 @@ class Model:
         ----------
         box : mapping, optional
             Lower and upper bounds of coordinates and first-order states; by default a full turn about the start for angles, and
-            2 (1 + |start|) to both sides for others.
+            2 (1 + |start|) on both sides of the start for other variables.
         starts : int
             Number of points from which Newton's method starts.
         **settings
@@ -371,25 +372,25 @@ class Model:
         Parameters
         ----------
         form : str, optional
-            ``"poincare"``, ``"canonical"``, ``"reduced"``, ``"lie-poisson"``, ``"orthonormal"`` or ``"hamel"``; the form in the
-            text unless given, or else Poincaré's.
+            ``"poincare"``, ``"canonical"``, ``"reduced"``, ``"lie-poisson"``, ``"orthonormal"`` or ``"hamel"``; by default the
+            form in the text, or else Poincaré's.
         parameters, start : mapping, optional
             Values that replace those of the text; they can also be set later.
         inputs : mapping, optional
-            Inputs with the values that replace those of the text: a number, or a table ``(times, values)``, which is
-            interpolated linearly, or as a third entry says, ``"linear"``, ``"cubic"`` or ``"hold"``.
+            Inputs with the values that replace those of the text: a number, or a table ``(times, values)``, which is interpolated
+            linearly, or as a third entry says: ``"linear"``, ``"cubic"`` or ``"hold"``.
         project_start : bool
             Whether the start is moved onto the constraints; ``hold`` names the components that must not be moved.
         project : sequence of str
             Integrals, or ``"energy"``, that the motion is made to keep at their values at the start.
         velocities : mapping, optional
-            Quasi-velocities of the form ``"hamel"``, each with its definition.
+            Quasi-velocities for the form ``"hamel"``, each with its definition.
         independent : sequence of str
             The velocities that are to be independent under constraints.
         reactions : bool
             Whether the reactions of constraints are columns of motions.
         limit_memory, limit_time : optional
-            Limits on the bytes of expressions, and on the seconds of one derivation.
+            Limits on the memory for expressions, in bytes, and on the time for one derivation, in seconds.
         verify : bool
             Whether the equations are compared with a second derivation, at the start and near it; where the two disagree,
             :class:`DisagreementError` is raised.

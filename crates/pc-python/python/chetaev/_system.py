@@ -35,8 +35,8 @@ class System(_native.System):
     """The compiled equations ẏ = f(t, y) of a model, with parameters and start values that can be set.
 
     ``system(t, y)`` is ẏ, and ``system.jac(t, y)`` its Jacobian, as :func:`scipy.integrate.solve_ivp` takes them. If ``y`` is an array
-    of n × N numbers, a state in each column, so are the results, computed without holding the lock of the interpreter; ``t`` is a
-    single number then, or N of them. Any number of threads may use a system at once. It can be pickled.
+    of n × N numbers, with a state in each column, so are the results, which are computed without holding the interpreter's lock; ``t``
+    is then a single number, or N numbers. Any number of threads may use a system at once. It can be pickled.
 
     It is made by :meth:`Model.system`.
 
@@ -161,7 +161,7 @@ class System(_native.System):
     def reactions(self, t: npt.ArrayLike, y: npt.ArrayLike) -> dict[str, Any]:
         """The reaction of each constraint, by its name.
 
-        They add to the force Q_s the sum, over the constraints, of the reaction times the derivative of the constraint with
+        The reactions add to the force Q_s the sum, over the constraints, of the reaction times the derivative of the constraint with
         respect to η_s.
         """
         if not self._model.constraints:
@@ -181,7 +181,7 @@ class System(_native.System):
     def bracket(self, f: object, g: object) -> Bracket:
         """The Poisson bracket (f, g) (12) of two expressions of the model.
 
-        The momenta are y_s = ∂L/∂η_s. Under nonholonomic constraints it is the almost-Poisson bracket of the independent
+        The momenta are y_s = ∂L/∂η_s. Under nonholonomic constraints the bracket is the almost-Poisson bracket of the independent
         momenta.
 
         Examples
@@ -194,14 +194,14 @@ class System(_native.System):
         return Bracket(self, str(f), str(g))
 
     def _watched(self, events: Mapping[str, object]) -> System:
-        """The system with events beside those of the text."""
+        """The system with events in addition to those of the text."""
         text = self._model.text.rstrip("\n") + "\n\n"
         for name, event in events.items():
             text += (event if isinstance(event, Event) else Event(event)).text(name) + "\n"
         return System(self._model._rewritten(text), self._form, **self.settings())
 
     def _driven(self, inputs: Mapping[str, Any]) -> dict[str, Any]:
-        """The settings with other inputs: what has been set since the system was made counts, except of these."""
+        """The settings with other inputs: values set since the system was made are included, except those of these inputs."""
         settings = self.settings()
         settings["inputs"] = {**settings["inputs"], **inputs}
         for name in inputs:
@@ -223,8 +223,8 @@ class System(_native.System):
         sensitivities: str | Sequence[str] = (),
         limit_time: float | None = None,
     ) -> dict[str, Any]:
-        """The options of an integration, in the form that the native part takes; None stands for
-        that of the text, or else the default."""
+        """The options of an integration, in the form that the native part takes; None stands for the value in the text, or else for the
+        default."""
         import numpy as np
 
         if times is not None and (t_end is not None or samples is not None):
@@ -268,8 +268,8 @@ class System(_native.System):
     ) -> Motion:
         """Integrates the motion from the start.
 
-        What is not given comes from the text, or else from the defaults of ``pc run``: the numbers equal those of that program
-        bit for bit. Ctrl-C ends the integration.
+        What is not given comes from the text, or else from the defaults of ``pc run``: the numbers equal those of ``pc run`` bit for
+        bit. Ctrl-C ends the integration.
 
         Parameters
         ----------
@@ -285,30 +285,30 @@ class System(_native.System):
         method : str, optional
             ``"auto"`` (the default), ``"adams"``, ``"bdf"``, ``"dop853"`` or ``"taylor"``.
         rtol : float, optional
-            Relative tolerance of a step.
+            Relative tolerance for a step.
         atol : float or mapping, optional
-            Absolute tolerance of a step: of all components of the state, or of some by name. Unless given it is that of the text,
-            or else min(1e-12, rtol s) for a component of the scale s at the start, where rounding errors permit this.
+            Absolute tolerance for a step: for all components of the state, or for some of them by name. By default it is the tolerance
+            in the text, or else min(1e-12, rtol s) for a component of the scale s at the start, where rounding errors permit this.
         max_step : float, optional
             The maximum length of a step.
         inputs : mapping, optional
-            The values of inputs for this run alone: numbers, or tables ``(times, values)``, as for :meth:`Model.system`. The
-            equations are derived again if an input gets a table that had none.
+            The values of inputs for this run alone: numbers, or tables ``(times, values)``, as for :meth:`Model.system`. The equations
+            are derived again if an input that had no table is given one.
         events : mapping, optional
             Events in addition to those of the text: names with expressions that vanish, or with an :class:`Event`. The model is
             derived once more.
         samples_per_step, accumulation : optional
             How events are searched for, as in ``[simulation]``.
         sensitivities : sequence of str
-            Parameters with respect to which the motion is differentiated; they add columns ``∂x/∂p``.
+            Parameters with respect to which the motion is differentiated; the derivatives are further columns ``∂x/∂p``.
         estimate : bool
             Whether there are columns ``error(x)`` with the estimated global errors of the others: the distance from a second, more
             accurate motion.
         limit_time : float, optional
             Seconds after which the integration ends with an error.
         verify : bool, optional
-            Whether the motion is compared with a second derivation at its start and its end; the first motion of a system is
-            compared unless given, and none of a system with ``verify=False``.
+            Whether the motion is compared with a second derivation at its start and its end; by default the first motion of a system is
+            compared, but no motion of a system made with ``verify=False``.
 
         Returns
         -------
@@ -317,8 +317,8 @@ class System(_native.System):
         Raises
         ------
         IntegrationError
-            If the integration cannot continue, or the motion has lost an integral that it is proved to keep; its ``motion`` is
-            the part that was computed.
+            If the integration cannot continue, or if the motion has failed to conserve an integral that is proved to be conserved; its
+            ``motion`` is the part that was computed.
         DisagreementError
             If the second derivation gives a different motion.
 
@@ -373,7 +373,7 @@ class System(_native.System):
         return motion
 
     def stepper(self, **settings: Any) -> Stepper:
-        """The motion from the start, step by step under inputs that a controller chooses.
+        """The motion from the start, step by step, under inputs that a controller chooses.
 
         A step takes some microseconds. Events of the text occur during steps, with their resets. The equations are those of the
         system, which have been compared with the second derivation; steps are not compared again.
@@ -418,17 +418,17 @@ class System(_native.System):
             Names with the values that they take, in all combinations, the last name changing fastest.
         random : mapping, optional
             Names with distributions instead: ``("normal", mean, deviation)``, ``("uniform", from, to)`` or
-            ``("lognormal", mean, deviation)`` of the logarithm, the numbers of ``pc sweep --random`` with the same seed.
+            ``("lognormal", mean, deviation)`` of the logarithm; the numbers are those of ``pc sweep --random`` with the same seed.
         members : int, optional
             How many members are drawn.
         seed : int
             The seed of the random numbers.
         t_end : float, optional
-            The time at which the motions end; the one in the text unless given.
+            The time at which the motions end; by default the one in the text.
         rows : int, optional
-            Number of rows of each motion, evenly spaced in time; only the last one unless given.
+            Number of rows of each motion, evenly spaced in time; by default only the last row is kept.
         threads : int, optional
-            Number of threads, as many as there are cores unless given.
+            Number of threads; by default as many as there are cores.
         progress : bool
             Whether to show progress, with tqdm where it is installed.
         **settings
@@ -446,20 +446,20 @@ class System(_native.System):
         return swept(self, vary, random, members, seed, t_end, rows, threads, progress, settings)
 
     def trim(self, free: str | Sequence[str] | None = None) -> Trim:
-        """The rest or the steady motion that some inputs and components of the state can be chosen for.
+        """A state of rest or steady motion, found by choosing some inputs and components of the state.
 
-        What is free is chosen by Newton's method from its value now; all else stays as it is, so that a velocity set at the start is
-        that of the steady motion. All rates vanish but those of cyclic coordinates, on which nothing depends.
+        Newton's method finds the free values, beginning at their present ones; everything else stays as it is, so that a velocity set
+        at the start is that of the steady motion. All rates vanish except those of cyclic coordinates, on which nothing depends.
 
         Parameters
         ----------
         free : sequence of str, optional
-            The inputs, coordinates, quasi-velocities and first-order states to be chosen; all inputs unless given.
+            The inputs, coordinates, quasi-velocities and first-order states to be chosen; by default all inputs.
 
         Raises
         ------
         ChetaevError
-            Where no values are found, or nothing determines some of them: these are named then.
+            If no values are found, or if nothing determines some of them, which the message then names.
 
         Examples
         --------
@@ -481,11 +481,11 @@ class System(_native.System):
         Parameters
         ----------
         count : int
-            How many exponents.
+            The number of exponents.
         interval : float
             The time after which tangent vectors are made orthonormal again.
         intervals, transient : int
-            How many intervals are counted, and how many before these are skipped.
+            The number of intervals that are counted, and the number that are skipped before them.
         **settings
             ``method``, ``rtol``, ``atol``, ``max_step``, … as for :meth:`run`.
         """
@@ -516,11 +516,11 @@ class System(_native.System):
         of : expression, optional
             The function at the end of the motion: an expression of the model, or the name of an output.
         t_end : float, optional
-            The time at which the motion ends; the one in the text unless given.
+            The time at which the motion ends; by default the one in the text.
         integral : expression, optional
             A function of the state, whose integral over the motion is added.
         by : sequence of str, optional
-            Parameters and inputs; unless given, all that are numbers and on which no other parameter depends.
+            Parameters and inputs; by default all those that are numbers and on which no other parameter depends.
         **settings
             ``rtol``, ``atol``, ``max_step``, … as for :meth:`run`; ``method`` is ``"adams"`` or ``"bdf"``.
 
@@ -544,7 +544,7 @@ class System(_native.System):
         return Gradient(value, dict(parameters), dict(start))
 
     def report(self, motion: Motion | None = None) -> Page:
-        """A page with all that is known about the model, and about a motion if one is given."""
+        """A page with everything that is known about the model, and about a motion if one is given."""
         return Page(self._report_page(None if motion is None else motion._recorded()), height=800)
 
 

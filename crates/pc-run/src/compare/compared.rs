@@ -21,13 +21,13 @@ pub struct Compared {
 }
 
 impl Compared {
-    /// Integrates the motions of two models, and compares them at the times of the first. Where they differ,
+    /// Integrates the motions of two models, and compares them at the times of the first. Where the motions differ,
     /// both are integrated once more at smaller tolerances, to distinguish different motions from errors of
     /// integration.
     ///
     /// # Errors
     /// [`CompareError`] if there is nothing to compare, and any error of a run. It is not an error if a
-    /// motion fails: it is compared as far as it goes.
+    /// motion fails: the motion is compared as far as it goes.
     pub fn of(
         models: [&Model; 2],
         wishes: [&Wishes; 2],

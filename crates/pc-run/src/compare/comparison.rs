@@ -25,15 +25,15 @@ pub struct Question {
 pub struct Comparison {
     /// The difference allowed.
     pub allowance: Allowance,
-    /// The number of times at which they are compared.
+    /// The number of times at which the motions are compared.
     pub rows: usize,
-    /// The last of these times.
+    /// The last time at which the motions are compared.
     pub until: f64,
     /// The difference of each column that is compared.
     pub differences: Vec<Difference>,
-    /// Columns that only the first has.
+    /// Columns that only the first motion has.
     pub only_first: Vec<String>,
-    /// Columns that only the second has.
+    /// Columns that only the second motion has.
     pub only_second: Vec<String>,
     /// A phrase that says how the ends of the motions differ, if they do.
     pub ends: Option<String>,
@@ -104,8 +104,8 @@ impl Comparison {
     }
 }
 
-/// For each time, twice the largest change of both columns up to that time at smaller tolerances; infinite from
-/// where rows at smaller tolerances are missing.
+/// For each time, twice the largest change up to that time that smaller tolerances make in the two columns together; infinite
+/// from the first row that is missing at smaller tolerances.
 fn uncertain(columns: [&[f64]; 2], finer: [&[f64]; 2]) -> Vec<f64> {
     let rows = columns[0].len().min(columns[1].len());
     let change = |i: usize| -> f64 {

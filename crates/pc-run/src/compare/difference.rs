@@ -24,9 +24,9 @@ pub struct Difference {
 /// The difference allowed: |a − b| ≤ `absolute` + `relative`·(the largest value of the column).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Allowance {
-    /// The part of it that is a fraction of the largest value.
+    /// The part of the allowed difference that is proportional to the largest value, as a fraction of that value.
     pub relative: f64,
-    /// The part of it that does not depend on the values.
+    /// The part of the allowed difference that does not depend on the values.
     pub absolute: f64,
 }
 
@@ -72,7 +72,7 @@ impl Difference {
         difference
     }
 
-    /// The same difference, but without effect on whether the motions are considered the same.
+    /// The same difference, but with no effect on whether the motions are considered the same.
     #[must_use]
     pub fn aside(self) -> Difference {
         Difference { counts: false, ..self }

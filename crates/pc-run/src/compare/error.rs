@@ -23,9 +23,9 @@ pub enum CompareError {
     /// The motions begin at different times.
     #[error("the motions begin at t = {first} and t = {second}: `t_start` in [simulation] must be the same")]
     Starts {
-        /// The start time of the first.
+        /// The start time of the first motion.
         first: f64,
-        /// The start time of the second.
+        /// The start time of the second motion.
         second: f64,
     },
     /// There is nothing to compare.
@@ -35,9 +35,9 @@ pub enum CompareError {
         first.join(", "), second.join(", ")
     )]
     NothingShared {
-        /// The columns of the first.
+        /// The columns of the first motion.
         first: Vec<String>,
-        /// The columns of the second.
+        /// The columns of the second motion.
         second: Vec<String>,
     },
     /// A column that the two motions do not have in common.
@@ -45,7 +45,7 @@ pub enum CompareError {
     NotShared {
         /// The requested name.
         name: String,
-        /// The columns of both.
+        /// The columns that both motions have.
         shared: Vec<String>,
     },
     /// Text that is not an expression.
@@ -53,7 +53,7 @@ pub enum CompareError {
     Expression {
         /// As written.
         text: String,
-        /// What is wrong with it.
+        /// What is wrong with the text.
         error: ParseError,
     },
     /// A name that is neither a column nor a parameter.
@@ -61,14 +61,14 @@ pub enum CompareError {
     UnknownName {
         /// The expression.
         text: String,
-        /// The name in it.
+        /// The unknown name in the expression.
         name: String,
         /// The model.
         model: String,
         /// The columns and parameters of the model.
         known: Vec<String>,
     },
-    /// A derivative, which is not in a table.
+    /// A derivative, which tables do not contain.
     #[error("--map: `{text}`: d() cannot be taken of columns; make it an entry of [outputs] in the model")]
     Derivative {
         /// The expression.

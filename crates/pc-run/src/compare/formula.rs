@@ -76,7 +76,7 @@ impl Formula {
     }
 }
 
-/// The value of a function that the parser knows.
+/// The value of one of the functions that the parser knows.
 fn call(function: &str, values: &[f64; 3]) -> f64 {
     match function {
         "tan" => values[0].tan(),

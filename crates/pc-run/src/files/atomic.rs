@@ -13,7 +13,7 @@ use crate::files::target::Target;
 pub type FileWriter<'f> = BufWriter<&'f mut File>;
 
 impl Target {
-    /// Puts what `write` writes at this place. Until all of it is on disk, an existing file stays unchanged.
+    /// Puts the output of `write` at this place. Until all of it is on disk, an existing file stays unchanged.
     ///
     /// # Errors
     /// [`io::Error`]

@@ -9,7 +9,7 @@ pub enum Kept {
     /// Nowhere.
     #[default]
     Nowhere,
-    /// All of it was kept in another file.
+    /// The whole result was kept in another file.
     Elsewhere(PathBuf),
     /// The first lines were kept beside the file.
     Beginning(PathBuf),

@@ -1,7 +1,7 @@
 //! Files that are being written beside those that they will replace.
 //!
-//! The partial file of `a.csv` is `.a.csv.pc-a1B2c3.part`, with six random characters. It is locked as long
-//! as its process lives: one that is not locked was left behind by a run that was killed.
+//! The partial file of `a.csv` is `.a.csv.pc-a1B2c3.part`, with six random characters. A partial file is locked as long
+//! as its process lives: an unlocked one was left behind by a run that was killed.
 
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};

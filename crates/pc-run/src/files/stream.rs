@@ -51,7 +51,7 @@ impl<'p> Stream<'p> {
         self.out.is_some()
     }
 
-    /// Writes a row; breaks if this fails.
+    /// Writes a row; returns a break if this fails.
     pub(crate) fn row(&mut self, numbers: &[f64]) -> ControlFlow<()> {
         let Some(out) = &mut self.out else { return ControlFlow::Break(()) };
         if let Err(error) = csv::row(numbers.iter().copied().map(Cell::Number), out) {

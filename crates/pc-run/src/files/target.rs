@@ -17,7 +17,7 @@ pub fn file(path: Option<&Path>) -> Option<&Path> {
 pub struct Target {
     /// The path as given.
     pub(super) asked: PathBuf,
-    /// The file to which links lead.
+    /// The file to which any links lead.
     pub(super) file: PathBuf,
     /// A character device or FIFO, which is open from the beginning and written directly.
     pub(crate) device: Option<File>,

@@ -8,8 +8,8 @@ use pc_verify::{Second, Slope, VerifyError};
 use crate::error::RunError;
 use crate::observer::Observer;
 
-/// The weights of the components in the direction along which A and C are compared, used in turn: none is a
-/// sum of others.
+/// The weights of the components in the direction along which A and C are compared, used in turn: no weight is a sum of
+/// others.
 const WEIGHTS: [f64; 5] = [1.0, -0.77, 0.59, -0.91, 0.68];
 
 /// Compares the matrices before they are returned: A and C along a direction of all components of the reduced

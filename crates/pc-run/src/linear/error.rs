@@ -73,7 +73,7 @@ pub enum LinearError {
         free: Vec<String>,
         /// √Σ f_i²
         residual: f64,
-        /// The state at which it ended.
+        /// The state at which the method ended.
         state: Vec<(String, f64)>,
     },
     /// A name to be chosen that is neither a component of the state nor an input.
@@ -138,7 +138,7 @@ pub enum LinearError {
     NoEquilibrium {
         /// The number of starts.
         starts: usize,
-        /// How many of them converged.
+        /// How many of the starts converged.
         converged: usize,
     },
     /// Any other error in the analysis.
@@ -147,7 +147,7 @@ pub enum LinearError {
 }
 
 impl LinearError {
-    /// The error for an error of the analysis that is not about a name given on the command line.
+    /// Converts an error of the analysis that is not about a name given on the command line.
     pub(crate) fn of(error: AnalysisError, of_linearization: bool) -> LinearError {
         match error {
             AnalysisError::DependsOnTime => LinearError::DependsOnTime { of_linearization },

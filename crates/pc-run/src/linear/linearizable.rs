@@ -60,8 +60,8 @@ impl<'g> Linearizable<'g> {
         Ok(Linearizable { assembly, equations, linearizer, start })
     }
 
-    /// As [`new`](Linearizable::new), but also tells the observer remarks on the equations and, if requested,
-    /// compares them with a second derivation.
+    /// As [`new`](Linearizable::new), but also gives the observer remarks on the equations and, if requested, compares the
+    /// equations with a second derivation.
     ///
     /// # Errors
     /// As for [`new`](Linearizable::new), and [`RunError::Verify`].

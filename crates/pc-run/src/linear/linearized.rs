@@ -31,7 +31,7 @@ pub struct Linearized {
 }
 
 impl Linearized {
-    /// Linearizes a model at the chosen state; if `verify` is set, equations and matrices are compared with a
+    /// Linearizes a model at the chosen state; if `verify` is set, the equations and matrices are compared with a
     /// second derivation.
     ///
     /// # Errors

@@ -147,7 +147,7 @@ impl Locus {
         })
     }
 
-    /// A picture of the real and imaginary parts over the parameter.
+    /// A picture of the real and imaginary parts against the parameter.
     pub fn picture(&self) -> Picture {
         let curves = |part: fn(&Eigenvalue) -> f64| {
             let points = |branch: &Vec<Option<Eigenvalue>>| {

@@ -13,9 +13,9 @@ use crate::linear::state::{At, Cyclic, StateChoice};
 /// Which cyclic coordinates are kept if the options do not say so.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum CyclicChoice {
-    /// All at an equilibrium, none for a steady motion.
+    /// All are kept at an equilibrium, none for a steady motion.
     OfState,
-    /// None, so that the number of components is the same for all values of a parameter.
+    /// None is kept, so that the number of components is the same for all values of a parameter.
     None,
 }
 
@@ -74,8 +74,8 @@ impl Varied {
     /// The linearization of the model with other values.
     ///
     /// # Errors
-    /// [`RunError`]; if the equations of the model depend on the values, it is located at the place in the
-    /// file that causes it.
+    /// [`RunError`]; if the equations of the model depend on the values, the error is located at the place in the file
+    /// that causes it.
     pub(crate) fn linearization(&self, model: &Model) -> Result<Linearization, RunError> {
         let Some((linearizer, places)) = &self.common else {
             let graph = model.graph();

@@ -17,7 +17,7 @@ impl At {
     /// All of them.
     pub const ALL: [At; 3] = [At::Steady, At::Rest, At::Start];
 
-    /// Its name in options and output.
+    /// Its name in options and in output.
     pub fn word(self) -> &'static str {
         match self {
             At::Steady => "steady",
@@ -30,7 +30,7 @@ impl At {
 /// Which cyclic coordinates are components of the state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cyclic {
-    /// Those that are at rest.
+    /// The cyclic coordinates that are at rest.
     Keep,
     /// None.
     Drop,
@@ -40,7 +40,7 @@ impl Cyclic {
     /// All of them.
     pub const ALL: [Cyclic; 2] = [Cyclic::Keep, Cyclic::Drop];
 
-    /// Its name in options and output.
+    /// Its name in options and in output.
     pub fn word(self) -> &'static str {
         match self {
             Cyclic::Keep => "keep",

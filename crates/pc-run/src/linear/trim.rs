@@ -1,4 +1,4 @@
-//! Rest or steady motion by the choice of some inputs and components of the state, for people and for programs.
+//! A state of rest or steady motion, found by choosing some inputs and components of the state, for people and for programs.
 
 use pc_analysis::{AnalysisError, Trim};
 use pc_model::Model;
@@ -11,17 +11,17 @@ use crate::linear::json::map;
 use crate::linear::linearizable::{Linearizable, placed};
 use crate::observer::Observer;
 
-/// A state and inputs of a model at which it rests or moves steadily.
+/// A state and inputs with which a model is at rest or moves steadily.
 #[derive(Debug)]
 pub struct Trimmed {
     title: String,
-    /// What was found.
+    /// The state of rest or steady motion that was found.
     pub trim: Trim,
 }
 
 impl Trimmed {
-    /// The values of the inputs and components of the state with these names by which the start of a model becomes an equilibrium or a
-    /// steady motion; the equations are compared with a second derivation where they are to be verified.
+    /// Finds values of the named inputs and components of the state that make the start of a model an equilibrium or a steady motion;
+    /// the equations are compared with a second derivation if they are to be verified.
     ///
     /// # Errors
     /// [`RunError`]
@@ -62,7 +62,7 @@ impl Trimmed {
         format!("{}: at rest or in steady motion\n{}", self.title, parts.concat())
     }
 
-    /// As one JSON object: `state`, `inputs` and the `rates` of cyclic coordinates by their names, and the `residual`.
+    /// The result as one JSON object: `state`, `inputs` and the `rates` of cyclic coordinates by their names, and the `residual`.
     pub fn json(&self) -> Value {
         let of = |values: &[(String, f64)]| map(values.iter().map(|(name, value)| (name.as_str(), *value)));
         let Trim { state, inputs, rates, residual } = &self.trim;

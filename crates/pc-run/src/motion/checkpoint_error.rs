@@ -30,7 +30,7 @@ pub enum CheckpointFileError {
     OtherRun {
         /// The file.
         path: PathBuf,
-        /// What is different now, with the value then and now.
+        /// What has changed, with its former and its present value.
         what: String,
     },
     /// A checkpoint would overwrite something else.

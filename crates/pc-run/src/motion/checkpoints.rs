@@ -20,8 +20,8 @@ use crate::motion::sensitivities::Derivatives;
 use crate::observer::Observer;
 use crate::plan::Plan;
 
-/// The shortest time between two writes of the file, in multiples of the time that the last write took. It
-/// does not affect the numbers.
+/// The shortest time between two writes of the file, in multiples of the time that the last write took. This time does
+/// not affect the numbers.
 const PATIENCE: u32 = 20;
 
 /// The files in which a run keeps its checkpoints, and from which it continues.

@@ -11,7 +11,7 @@ use crate::plan::Plan;
 use crate::plan::tolerances::Tolerances;
 use pc_print::short;
 
-/// An error counts as grown to the size of the motion if it exceeds this fraction of the largest values.
+/// An error counts as having grown to the size of the motion if it exceeds this fraction of the largest values.
 const GROWN: f64 = 0.1;
 /// An error that has grown to the size of the motion also exceeds this many absolute tolerances.
 const TOLERANCES: f64 = 10.0;
@@ -21,7 +21,7 @@ const TOLERANCES: f64 = 10.0;
 pub struct Estimate {
     /// The integration method of the companion.
     pub method: Method,
-    /// Its relative tolerance.
+    /// The relative tolerance of the companion.
     pub rtol: f64,
     /// The number of rows whose errors are known.
     pub rows: usize,
@@ -29,11 +29,11 @@ pub struct Estimate {
     pub grown: Option<f64>,
     /// The times of the rows before which an event occurred in only one of the two motions.
     pub beyond_events: Vec<f64>,
-    /// The reason why later rows have no errors, if that is so.
+    /// The reason why later rows have no errors, if there is one.
     pub incomplete: Option<String>,
 }
 
-/// Integrates the companion of a motion, with the flow in its state before the motion.
+/// Integrates the companion of a motion; the flow must be as it was before the motion.
 pub(crate) fn companion(
     flow: &mut Flow,
     (plan, options): (&Plan, &Options),
@@ -103,7 +103,7 @@ fn why(estimate: &ErrorEstimate, flow: &Flow) -> String {
 }
 
 /// The time of the first row, other than the rows `others`, in which the norm of the errors of the coordinates, of the
-/// velocities or of the first-order states exceeds both a tenth of that of their largest values and `negligible`.
+/// velocities or of the first-order states exceeds both a tenth of the norm of their largest values and `negligible`.
 fn grown(table: &Table, negligible: f64, others: &[usize]) -> Option<f64> {
     let kinds = [table.coordinates(), table.quasi_velocities(), table.states()];
     let norm = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();

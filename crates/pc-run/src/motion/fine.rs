@@ -9,7 +9,7 @@ use crate::motion::table::Table;
 use crate::observer::Observer;
 use crate::plan::Plan;
 
-/// The largest number of numbers held in memory.
+/// The greatest count of numbers held in memory.
 const MOST_NUMBERS: usize = 4_000_000;
 
 /// The smallest number of points of a motion, unless a step would then have more than `MOST_POINTS`.

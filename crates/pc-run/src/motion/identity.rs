@@ -1,5 +1,5 @@
-//! Everything on which the numbers of a motion, or of other work on a model, depend. It is stored with interrupted work, so that
-//! only the same command can continue it.
+//! Everything on which the numbers of a motion, or of other work on a model, depend. This identity is stored with interrupted
+//! work, so that only the same command can continue it.
 
 use pc_model::Model;
 use pc_model::document::AbsoluteTolerance;

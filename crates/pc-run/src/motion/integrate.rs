@@ -28,7 +28,7 @@ use crate::plan::Wishes;
 use crate::plan::memory;
 use crate::plan::tolerances::{Tolerances, note_largest};
 
-/// The parts of a run in addition to its rows; none by default.
+/// What a run contains in addition to its rows; nothing by default.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Besides {
     /// Whether the equations are compared with a second derivation, at the start and, where this is
@@ -36,7 +36,7 @@ pub struct Besides {
     pub verify: bool,
     /// Whether the run contains the motion between its rows too, with as many points as smooth curves need.
     pub fine: bool,
-    /// Whether the observer is told remarks on the equations.
+    /// Whether the observer is given remarks on the equations.
     pub remarks: bool,
     /// Whether the table contains the errors of its columns.
     pub estimate: bool,
@@ -101,9 +101,8 @@ impl Run {
         integrated((model, &model.assemble(&graph)?), plan.form, || Ok(plan), besides, None, observer)
     }
 
-    /// As [`of`](Run::of), for equations that have been derived, with the values of the model. They are
-    /// derived again only if they are to be verified, or if a lost integral or lost inertia has to be
-    /// explained.
+    /// As [`of`](Run::of), but for equations that have been derived before, with the values of the model. The equations
+    /// are derived again only if they are to be verified, or if a lost integral or lost inertia has to be explained.
     ///
     /// # Errors
     /// As for [`of`](Run::of).

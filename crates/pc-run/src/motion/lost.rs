@@ -5,7 +5,7 @@
 pub struct LostIntegral {
     /// Its name.
     pub name: String,
-    /// Its value at the start.
+    /// The value of the integral at the start.
     pub start: f64,
     /// The largest change from this value.
     pub drift: f64,

@@ -8,7 +8,7 @@ use pc_model::{Assembly, Flow, Variables};
 /// steps are short.
 const VANISHES: f64 = 1e-6;
 
-/// The largest number of velocities for which the mass matrix is computed to find this out.
+/// The largest number of velocities of a model for which the mass matrix is examined.
 const MOST_VELOCITIES: usize = 12;
 
 /// The velocity in whose direction the mass matrix is nearly singular at `state`, and the fraction of its inertia that

@@ -10,7 +10,7 @@ use crate::motion::table::Table;
 use pc_print::short;
 
 impl Run {
-    /// The run in the form that pages and pictures take.
+    /// The run in the form that pages and pictures require.
     pub fn record(&self) -> Recording {
         let at = || short(self.statistics.current_time, 6);
         let remark = match &self.ending {

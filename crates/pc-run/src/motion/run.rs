@@ -53,33 +53,33 @@ pub struct Run {
     pub occurrences: Vec<Occurrence>,
     /// The parts of the motion that slide along a surface on which forces jump.
     pub slides: Vec<Slide>,
-    /// How it ended.
+    /// How the motion ended.
     pub ending: Ending,
-    /// An integral that is proved to be conserved but is not: the motion is wrong.
+    /// An integral that is proved to be conserved but has changed: the motion is wrong.
     pub lost: Option<LostIntegral>,
-    /// If the motion failed, the velocity that has lost its inertia and the fraction of it that is left.
+    /// If the motion failed, the velocity that has lost its inertia and the fraction of the inertia that is left.
     pub lost_inertia: Option<(String, f64)>,
     /// The result of the comparison with a second derivation, if there was one.
     pub verification: Option<Verification>,
-    /// The work done.
+    /// The work that the integration took.
     pub statistics: Statistics,
-    /// The time it took.
+    /// The computing time.
     pub wall: Duration,
 }
 
 /// How a run ended.
 #[derive(Debug)]
 pub enum Ending {
-    /// It reached its end time.
+    /// The run reached its end time.
     Completed,
-    /// A terminal event ended it.
+    /// A terminal event ended the run.
     Event {
         /// Its name.
         name: String,
     },
-    /// Ctrl-C ended it.
+    /// Ctrl-C ended the run.
     Interrupted,
-    /// The time limit ended it.
+    /// The time limit ended the run.
     Ended(Spent),
     /// A row could not be written.
     Unwritten,

@@ -14,8 +14,8 @@ use pc_verify::Slope;
 
 use crate::error::RunError;
 
-/// Derivatives of a motion with respect to parameters, which are integrated together with it, and the
-/// results.
+/// Derivatives of a motion with respect to parameters, which are integrated together with the motion, and their values at each
+/// output.
 pub(crate) struct Derivatives {
     parameters: Vec<usize>,
     names: Vec<String>,
@@ -82,7 +82,7 @@ impl Derivatives {
         self.take(solved)
     }
 
-    /// Takes over the derivatives, as far as they were integrated.
+    /// Stores the derivatives, as far as they were integrated.
     fn take(
         &mut self,
         solved: Result<SensitivitySolution, Box<SolveFailure<SensitivitySolution>>>,
@@ -93,8 +93,8 @@ impl Derivatives {
         (Solution { trajectory: trajectory.motion().clone(), occurrences, ending, slides }, error)
     }
 
-    /// The rates (∂f/∂y) ∂y/∂p + ∂f/∂p at the last output, which are what is integrated; empty if the field has no derivatives of
-    /// its own.
+    /// The rates (∂f/∂y) ∂y/∂p + ∂f/∂p of the derivatives at the last output, as they are integrated; empty if the field has no
+    /// derivatives of its own.
     pub(crate) fn slopes(&self, flow: &mut Flow, t: f64, state: &[f64]) -> Vec<Slope> {
         let (motion, dim) = (&mut flow.motion, state.len());
         let mut by_state = vec![f64::NAN; dim * dim];

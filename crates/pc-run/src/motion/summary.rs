@@ -117,7 +117,7 @@ fn work_done(run: &Run) -> String {
 
 /// If an event occurs no more often than this, all its occurrences are listed.
 const FEW: usize = 5;
-/// The remark on an event whose function is zero at the start and then passes beyond it.
+/// The remark on an event whose function is zero at the start and then moves on beyond zero.
 const AT_START: &str = "   (zero at the start and beyond it from there on, which is no passage)";
 
 fn events(run: &Run) -> Vec<String> {

@@ -15,7 +15,7 @@ pub struct Table {
     states: usize,
     conserved: usize,
     derivatives: usize,
-    /// The number of columns of errors: that of the columns between t and the derivatives, or zero.
+    /// The number of columns of errors: the number of columns between t and the derivatives, or zero.
     errors: usize,
     /// The values, one row after the other.
     values: Vec<f64>,
@@ -259,13 +259,13 @@ pub(crate) fn raised(worst: f64, change: f64) -> f64 {
     if change > worst || change.is_nan() { change } else { worst }
 }
 
-/// How far a quantity moved away from its start value.
+/// How far a quantity moved from its start value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drift {
     /// I(t_start)
     pub start: f64,
     /// max |I(t) − I(t_start)|
     pub absolute: f64,
-    /// The same, divided by |I(t_start)|; none unless this is larger.
+    /// The absolute drift divided by |I(t_start)|; none unless |I(t_start)| is larger than the drift.
     pub relative: Option<f64>,
 }

@@ -46,7 +46,7 @@ pub fn vouched(
     Ok(())
 }
 
-/// As [`vouched`], but returns the reason if the equations could not be compared.
+/// Does the same as [`vouched`], but returns the reason if the equations could not be compared.
 ///
 /// # Errors
 /// [`RunError::Verify`] if the derivations disagree.
@@ -67,7 +67,7 @@ pub fn compared(
 pub struct Verification {
     second: Result<Second, VerifyError>,
     form: &'static str,
-    /// The places at which the motion was compared, with the results.
+    /// The points of the motion at which it was compared, with the results.
     outcomes: Vec<(&'static str, Result<Agreement, VerifyError>)>,
     /// The comparison of derivatives with differences.
     derivatives: Vec<Result<Agreement, VerifyError>>,

@@ -11,7 +11,7 @@ use crate::plan::Plan;
 /// the current ones, and the bytes to be written.
 const CHECKPOINTED: u64 = 3;
 
-/// The number of numbers held in memory for each row until the table is written.
+/// How many numbers are held in memory for each row until the table is written.
 pub(crate) fn numbers(flow: &Flow, plan: &Plan, checkpointed: bool, estimated: bool) -> u64 {
     let dim = flow.motion.dim() as u64;
     let columns = 1 + flow.columns().len() as u64;

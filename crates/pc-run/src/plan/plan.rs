@@ -9,7 +9,7 @@ use crate::error::RunError;
 use crate::plan::Wishes;
 use crate::plan::tolerances::Tolerances;
 
-/// The factor that makes tolerances much smaller.
+/// The factor that makes tolerances a hundred times smaller.
 const FINER: f64 = 1e-2;
 /// No relative tolerance is made smaller than this: the rounding error of a few operations.
 const LEAST: f64 = 1e-14;

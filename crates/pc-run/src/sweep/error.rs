@@ -47,7 +47,7 @@ pub enum SweepError {
     OtherSweep {
         /// The journal.
         journal: PathBuf,
-        /// What is different now, with the value then and now.
+        /// What has changed, with its former and its present value.
         what: String,
     },
     /// The journal cannot be read or written.
@@ -83,7 +83,7 @@ pub enum SweepError {
     /// Two shards belong to different sweeps.
     #[error("{} and {} are not of the same sweep: the first has {what}", path.display(), other.display())]
     OtherShard {
-        /// The path of one of them.
+        /// The path of one of the shards.
         path: PathBuf,
         /// The other.
         other: PathBuf,
@@ -101,9 +101,9 @@ pub enum SweepError {
     /// Shards are missing.
     #[error("of {of} shards {} missing: {}", if shards.len() == 1 { "one is" } else { "some are" }, numbers(shards))]
     Missing {
-        /// Their numbers.
+        /// The numbers of the missing shards.
         shards: Vec<u64>,
-        /// How many there are.
+        /// How many shards there are.
         of: u64,
     },
     /// A shard is not complete.
@@ -116,9 +116,9 @@ pub enum SweepError {
         path: PathBuf,
         /// Which.
         shard: Shard,
-        /// How many members it has.
+        /// How many members the shard has.
         done: u64,
-        /// How many it should have.
+        /// How many members the shard should have.
         members: u64,
     },
     /// The record of a member does not fit the columns.
@@ -136,7 +136,7 @@ pub enum SweepError {
     /// No member was completed. The table has been written.
     #[error("none of the {members} members was completed; the first: {first}")]
     NoneCompleted {
-        /// How many there are.
+        /// How many members there are.
         members: u64,
         /// The error of the first member.
         first: String,
@@ -144,9 +144,9 @@ pub enum SweepError {
     /// The time limit ended the sweep.
     #[error("ended after {done} of {members} members: {limit}; the same command continues from there")]
     Ended {
-        /// How many are finished.
+        /// How many members are finished.
         done: u64,
-        /// How many there are.
+        /// How many members there are.
         members: u64,
         /// The limit.
         limit: Spent,
@@ -154,9 +154,9 @@ pub enum SweepError {
     /// Ctrl-C.
     #[error("interrupted after {done} of {members} members; the same command continues from there")]
     Interrupted {
-        /// How many are finished.
+        /// How many members are finished.
         done: u64,
-        /// How many there are.
+        /// How many members there are.
         members: u64,
     },
 }

@@ -45,16 +45,16 @@ pub trait Records {
     fn kept(&self) -> Option<&Path>;
 }
 
-/// How many members ended in each way.
+/// How many members ended in each of the possible ways.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     /// The number of members that are finished.
     pub done: u64,
-    /// The number of these that were completed.
+    /// The number of finished members that were completed.
     pub completed: u64,
     /// The number of members that were ended by a terminal event.
     pub by_event: u64,
-    /// The first few of the other members, with their messages.
+    /// The first few of the members that ended otherwise, with their messages.
     pub others: Vec<(u64, Status, String)>,
 }
 
@@ -219,7 +219,7 @@ impl Journal {
         &self.path
     }
 
-    /// How many members ended in each way.
+    /// How many members ended in each of the possible ways.
     pub fn tally(&self) -> &Tally {
         &self.tally
     }

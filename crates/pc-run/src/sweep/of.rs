@@ -6,7 +6,7 @@ pub enum SweepOf {
     /// Its motion.
     #[default]
     Run,
-    /// Its eigenvalues at a state near its start.
+    /// The eigenvalues of the member at a state near its start.
     Linearize,
     /// Its properties.
     Check,
@@ -25,7 +25,7 @@ impl SweepOf {
         }
     }
 
-    /// The one with this name.
+    /// The computation with this name.
     pub(crate) fn of_word(word: &str) -> Option<SweepOf> {
         SweepOf::ALL.into_iter().find(|of| of.word() == word)
     }

@@ -1,5 +1,5 @@
-//! The picture of a sweep: curves over one parameter, a coloured cell for each pair of values of two
-//! parameters, or histograms of random members.
+//! The picture of a sweep: curves against one parameter, a coloured cell for each pair of values of two parameters, or
+//! histograms of random members.
 
 use std::io;
 
@@ -64,7 +64,7 @@ fn chosen(sheet: &SweepColumns, wanted: &[String]) -> Result<Vec<usize>, SweepPl
     wanted.iter().map(place).collect()
 }
 
-/// Whether number `j` in a row is its time.
+/// Whether number `j` in a row is the time of the row.
 fn is_time(sheet: &SweepColumns, j: usize) -> bool {
     sheet.of() == SweepOf::Run && j == 0
 }
@@ -78,7 +78,7 @@ fn shown(of: SweepOf) -> &'static str {
     }
 }
 
-/// What to add to the name of a column, to say at which time it is shown.
+/// What is added to the name of a column to say at which time it is shown.
 fn at_the_end(of: SweepOf) -> &'static str {
     if of == SweepOf::Run { " at the end" } else { "" }
 }
@@ -227,7 +227,7 @@ fn placed(value: f64, scale: Scale) -> f64 {
     if scale == Scale::Decades { value.log10() } else { value }
 }
 
-/// Curves over the quantity that is varied.
+/// Curves against the quantity that is varied.
 fn curves(finished: &[Member], j: usize, varied: &str, (names, of): (&[String], SweepOf)) -> Vec<Panel> {
     let scale = scale_of(&values(finished, j));
     let curve = |(k, name): (usize, &String)| {

@@ -3,13 +3,13 @@
 /// How a member ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
-    /// It reached its end time.
+    /// The motion of the member reached its end time.
     Completed,
-    /// Its integration failed.
+    /// The integration of the member failed.
     Failed,
-    /// It could not start.
+    /// The member could not start.
     Refused,
-    /// Its computation panicked.
+    /// The computation of the member panicked.
     Panicked,
     /// A terminal event ended it.
     Event,
@@ -34,13 +34,13 @@ impl Status {
 /// A finished member.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
-    /// Its number, counted from 0.
+    /// The number of the member, counted from 0.
     pub member: u64,
-    /// How it ended.
+    /// How the member ended.
     pub status: Status,
     /// Internal steps.
     pub steps: u64,
-    /// Why it was not completed, or which event ended it; otherwise empty.
+    /// Why the member was not completed, or which event ended it; otherwise empty.
     pub message: String,
     /// The values of the varied quantities.
     pub values: Vec<f64>,

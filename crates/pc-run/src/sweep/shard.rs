@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 /// A part of a sweep: every `of`-th member, since neighbouring members often cost the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// Its number, counted from 1.
+    /// The number of the shard, counted from 1.
     pub number: u64,
     /// How many shards there are.
     pub of: u64,

@@ -108,7 +108,7 @@ impl Shards {
         })
     }
 
-    /// How many members ended in each way.
+    /// How many members ended in each of the possible ways.
     pub fn tally(&self) -> Tally {
         Tally::sum(self.journals.iter().map(Journal::tally))
     }

@@ -17,7 +17,7 @@ use crate::table::rows::{Cell, CellKind, Column};
 pub struct Misshapen {
     /// The member.
     pub member: u64,
-    /// How many varied values, numbers and words it has.
+    /// How many varied values, numbers and words the record has.
     pub found: [usize; 3],
     /// How many varied values, numbers and words belong to one row.
     pub columns: [usize; 3],

@@ -31,7 +31,7 @@ impl Values {
         }
     }
 
-    /// All of them, in order.
+    /// All values, in order.
     pub fn in_order(&self) -> Vec<f64> {
         (0..self.count()).map(|place| self.at(place)).collect()
     }

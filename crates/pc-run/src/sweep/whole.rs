@@ -74,7 +74,7 @@ pub struct Sweep {
 /// The members of a sweep that were computed.
 #[derive(Clone, Debug)]
 pub struct Swept {
-    /// How many members were finished before.
+    /// How many members were finished before this run.
     pub before: u64,
     /// How many of all members ended in each way.
     pub tally: Tally,
@@ -240,7 +240,7 @@ impl Sweep {
         Ok(Swept { before, tally: journal.tally().clone(), wall: start.elapsed() })
     }
 
-    /// Passes the records of the members of a shard at these places to `take`, in order, until it breaks.
+    /// Passes the records of the members of a shard at these places to `take`, in order, until `take` breaks.
     fn each(
         &self,
         shard: Shard,

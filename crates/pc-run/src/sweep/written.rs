@@ -9,7 +9,7 @@ use crate::sweep::values::{Values, Vary};
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{why}")]
 pub struct NotAVariation {
-    /// Why, and what would be right.
+    /// Why the text is not a variation, and what would be correct.
     pub why: String,
 }
 

@@ -32,7 +32,7 @@ impl Array {
         Array { name: name.to_owned(), rows: real.len(), columns: 1, is_list: true, real, imaginary: None }
     }
 
-    /// A complex array, from rows of pairs of real and imaginary parts.
+    /// A complex array, made from rows of pairs of real and imaginary parts.
     pub(crate) fn complex(name: &str, rows: &[Vec<(f64, f64)>]) -> Array {
         let (real, imaginary) = rows.iter().flatten().copied().unzip();
         let columns = rows.first().map_or(0, Vec::len);

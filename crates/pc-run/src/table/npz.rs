@@ -9,7 +9,7 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 use crate::table::array::Array;
 use crate::table::rows::{Cell, CellKind, Rows};
 
-/// The number of numbers from which an entry needs the archive format for more than 4 GiB.
+/// The smallest number of values for which an entry needs the archive format for more than 4 GiB.
 const LARGE: u64 = (1 << 29) - 1024;
 
 /// The options for entries. The archive has no date, so that the same numbers give the same bytes.

@@ -8,7 +8,7 @@ from typing import Any
 
 
 def listed(argument: str, given: str | Iterable[str]) -> list[str]:
-    """The names that an argument lists; a text alone is one name."""
+    """The names that an argument lists; a single text is one name."""
     names = [given] if isinstance(given, str) else list(given)
     for name in names:
         if not isinstance(name, str):
@@ -42,7 +42,7 @@ def reals(argument: str, given: Mapping[str, Any]) -> dict[str, float]:
 
 
 def only(call: str, settings: Collection[str], known: Collection[str]) -> None:
-    """An error that names the call where it is given a setting that it does not take."""
+    """Raises an error that names the call if it is given a setting that it does not take."""
     for name in settings:
         if name == "sensitivities":
             raise TypeError(f"{call}() takes no sensitivities: they are columns of a motion of System.run()")

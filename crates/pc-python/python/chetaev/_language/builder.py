@@ -149,7 +149,7 @@ class Builder(Generic[M]):
         return self._put("kinematics", (coordinate,), formula(velocity))
 
     def algebra(self, name: str | None = None, brackets: Mapping[tuple[str, str], Any] | None = None) -> Builder[M]:
-        """The brackets of the operators: those of a named Lie algebra, or each one given separately."""
+        """The brackets of the operators: either those of a named Lie algebra, or each bracket by itself."""
         if name is not None:
             self._put("algebra", ("name",), quoted(name))
         for (r, s), value in (brackets or {}).items():
@@ -192,9 +192,10 @@ class Builder(Generic[M]):
         Parameters
         ----------
         joint : Joint or mapping, optional
-            How it moves relative to the body to which it is attached, as ``Revolute(axis=[0, 0, 1])``; without one it has a ``position``.
+            How the body moves relative to the one to which it is attached, such as ``Revolute(axis=[0, 0, 1])``; a body without a joint
+            has a ``position``.
         parent : str, optional
-            The body to which it is attached, the world unless given.
+            The body to which it is attached; by default the world.
         **entries
             ``mass``, ``center``, ``inertia``, ``force``, ``torque``, …
         """
@@ -219,7 +220,7 @@ class Builder(Generic[M]):
         return self._table("loops", name, entries)
 
     def draw(self, kind: str, **entries: Any) -> Builder[M]:
-        """A shape that follows the motion in films: ``"line"``, ``"disc"``, ``"spring"``, … as in ``[[draw]]`` of a text."""
+        """A shape that follows the motion in animations: ``"line"``, ``"disc"``, ``"spring"``, … as in ``[[draw]]`` of a text."""
         # The name of a starting point, `from`, is a keyword of Python.
         entries = {key.rstrip("_"): value for key, value in entries.items()}
         self._drawn.append({key: entry(key, value) for key, value in {"kind": kind, **entries}.items()})

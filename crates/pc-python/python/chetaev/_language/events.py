@@ -16,7 +16,7 @@ class Event:
     Parameters
     ----------
     when : expression
-        The event occurs where this vanishes.
+        The event occurs where this expression vanishes.
     direction : str
         ``"rising"``, ``"falling"`` or ``"both"``.
     terminal : bool

@@ -15,14 +15,14 @@ from typing import Any, Union
 
 from chetaev._language.errors import ChetaevError
 
-#: How tightly an expression holds together: a sum, a product, a sign, a power, a name.
+#: How tightly an expression binds: a sum, a product, a sign, a power, a name.
 _SUM, _PRODUCT, _SIGN, _POWER, _ATOM = range(5)
 
 _NAME = re.compile(r"[A-Za-z_α-ωΑ-Ω][A-Za-z0-9_α-ωΑ-Ω]*'?\Z")
 
 
 class Expression:
-    """An expression of a model: its text, put together by operators of Python.
+    """An expression of a model: its text, put together by the operators of Python.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ Operand = Union[Expression, str, float, int]
 
 
 def expression(value: object) -> Expression:
-    """The expression of a number, of a text, or of an expression of SymPy."""
+    """Converts a number, a text or an expression of SymPy to an expression."""
     if isinstance(value, Expression):
         return value
     if isinstance(value, str):
@@ -243,12 +243,12 @@ def sign(x: Operand) -> Expression:
 
 
 def minimum(a: Operand, b: Operand) -> Expression:
-    """The smaller of two."""
+    """The smaller of two expressions."""
     return _call("min", a, b)
 
 
 def maximum(a: Operand, b: Operand) -> Expression:
-    """The larger of two."""
+    """The larger of two expressions."""
     return _call("max", a, b)
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 
 def course(name: str, given: Any) -> float | tuple[list[float], list[float], str]:
-    """What an input is given, as the native part takes it: a number, or times, values and the interpolation between them."""
+    """What an input is set to, as the native part takes it: a number, or times, values and the interpolation between them."""
     import numpy as np
 
     if isinstance(given, (tuple, list)) and len(given) in (2, 3):

@@ -29,7 +29,7 @@ class Joint:
     coordinates: Sequence[str] | None = None
     quasi_velocities: Sequence[str] | None = None
 
-    #: Its name in a text.
+    #: The name of the kind of joint in a text.
     kind: ClassVar[str]
 
     def entries(self) -> dict[str, Any]:
@@ -90,7 +90,7 @@ class Cylindrical(Joint):
 
 @dataclass(frozen=True, kw_only=True)
 class Universal(Joint):
-    """The body turns about the first of two ``axes``, then about the second, carried along: ``NAME_1``, ``NAME_2``."""
+    """The body turns about the first of two ``axes``, then about the second, which is carried along: ``NAME_1``, ``NAME_2``."""
 
     kind = "universal"
     axes: Sequence[Sequence[Any]]

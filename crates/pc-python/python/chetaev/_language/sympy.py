@@ -119,7 +119,7 @@ def _text(value: Any) -> str:
 
 
 def _step(value: Any) -> str:
-    """The text step(x, a, b) for a choice by x ≥ 0 or x < 0."""
+    """The text step(x, a, b) for a choice that depends on whether x ≥ 0 or x < 0."""
     import sympy
 
     (first, condition), *others = value.args
@@ -145,7 +145,7 @@ class Reader:
         self._known[name] = self.read(text)
 
     def symbol(self, name: str) -> Any:
-        """The symbol of this name."""
+        """The symbol with this name."""
         import sympy
 
         return self._known.setdefault(name, sympy.Symbol(name, real=True))

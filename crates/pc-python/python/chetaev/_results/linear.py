@@ -43,7 +43,7 @@ class Linearization:
     A, B, C, D : array
         The matrices.
     eigenvalues : array
-        Those of A, in descending order of their real parts.
+        The eigenvalues of A, in descending order of their real parts.
     modes : list
         The eigenvector of each eigenvalue, an array of n complex numbers, or None if it is not determined.
     is_steady : bool
@@ -111,11 +111,11 @@ class RootLocus:
     Attributes
     ----------
     parameter : str
-        The name of what is varied.
+        The name of the quantity that is varied.
     values : array
-        Its values.
+        The values of this quantity.
     branches : array
-        The eigenvalues: a row for each, followed from value to value; NaN where there is none.
+        The eigenvalues: a row for each branch, which is followed from value to value; NaN where there is no eigenvalue.
     missing : dict
         The values for which there is no linearization, with the reason for each.
     """
@@ -192,13 +192,13 @@ class Equilibrium(NamedTuple):
     state: Mapping[str, float]
     #: The energy.
     energy: float
-    #: The eigenvalues of the motions near it.
+    #: The eigenvalues of the motions near this state.
     eigenvalues: Complexes
-    #: Its stability, in words.
+    #: The stability of the state, in words.
     stability: str
-    #: The dimension of the family of equilibria that it belongs to; 0 where it is isolated.
+    #: The dimension of the family of equilibria to which the state belongs; 0 if the state is isolated.
     family: int
-    #: How many equilibria of that family were found.
+    #: How many equilibria of the family were found.
     members: int
 
 

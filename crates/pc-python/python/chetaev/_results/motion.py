@@ -51,12 +51,12 @@ class Motion(Mapping[str, "Floats"]):
     terminal : str or None
         The name of the event that ended the motion.
     drift : dict
-        How far each integral, including the energy, deviates at most from its value at the start.
+        The largest deviation of each integral, including the energy, from its value at the start.
     residuals : dict
         The largest residual of each constraint that is kept by projection.
     statistics : dict
         Steps, evaluations, …; for ``"auto"`` also ``stiff_from``, the time at which stiffness was first detected, or None,
-        ``implicit_steps`` and ``changes``, how often the method changed.
+        ``implicit_steps`` and ``changes``, how often the method was switched.
 
     Examples
     --------
@@ -95,7 +95,7 @@ class Motion(Mapping[str, "Floats"]):
 
     @property
     def system(self) -> Any:
-        """The :class:`System` with the values that it had, derived once more on the first request."""
+        """The :class:`System` with the values that it had for this motion, derived once more on the first request."""
         if self._system is None:
             model, form, settings = self._origin
             self._system = model.system(form, **settings)
@@ -127,7 +127,7 @@ class Motion(Mapping[str, "Floats"]):
 
     @property
     def drift(self) -> dict[str, float]:
-        """How far each integral, including the energy, deviates at most from its value at the start."""
+        """The largest deviation of each integral, including the energy, from its value at the start."""
         if len(self.t) == 0:
             return {}
         starts = zip(self._kinds["conserved"], self._conserved_at_start)
@@ -172,10 +172,10 @@ class Motion(Mapping[str, "Floats"]):
         Parameters
         ----------
         names : sequence of str, optional
-            The columns, on common axes; all unless given, grouped by kind and scale as in ``pc run --plot``, with events and the drift of
-            integrals.
+            The columns, on common axes; by default all of them, grouped by kind and scale as in ``pc run --plot``, with events and the
+            drift of integrals.
         ax : optional
-            The axes to draw on; with these, all columns are drawn on common axes.
+            The axes to draw on; if they are given, all columns are drawn on them.
 
         Returns
         -------
@@ -238,6 +238,6 @@ class Motion(Mapping[str, "Floats"]):
         return Page(page)
 
     def report(self) -> Page:
-        """A page with all that is known about the model and this motion."""
+        """A page with everything that is known about the model and this motion."""
         page: Page = self.system.report(self)
         return page

@@ -18,7 +18,7 @@ class Lyapunov(NamedTuple):
 
     #: The largest exponents, in 1/time.
     exponents: Floats
-    #: Their means after each interval: a row for each interval.
+    #: The mean exponents after each interval: a row for each interval.
     history: Floats
 
 
@@ -27,9 +27,10 @@ class Gradient(NamedTuple):
 
     #: Its value.
     value: float
-    #: The derivatives by parameters and inputs, by their names.
+    #: The derivatives with respect to parameters and inputs, by their names.
     by_parameters: dict[str, float]
-    #: The derivatives by the components of the state at the start, by their names, each with the others held.
+    #: The derivatives with respect to the components of the state at the start, by their names, each with the others
+    #: held fixed.
     by_start: dict[str, float]
 
 

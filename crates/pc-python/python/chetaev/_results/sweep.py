@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 class Sweep(Mapping[str, "Floats"]):
     """The members of a sweep: arrays by name, one entry, or one row, for each member.
 
-    A parameter that was varied is an array by its name, a start value by its name and ``(start)``. A sweep is made by :meth:`System.sweep`.
+    The name of a varied parameter gives the array of its values; for a varied start value, ``(start)`` is appended to the name. A sweep is
+    made by :meth:`System.sweep`.
 
     Attributes
     ----------
