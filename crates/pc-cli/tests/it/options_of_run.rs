@@ -77,7 +77,7 @@ fn set_gives_parameters_and_starts_other_values() {
 }
 
 #[test]
-fn a_start_with_values_keeps_the_named_components() {
+fn a_moved_start_keeps_the_named_components() {
     // Newton's method ends at roundings of numbers near 1.
     let near = |a: f64, b: f64| (a - b).abs() < 1e-14;
     let kept = start(&pc(CIRCLE, &["--project-start", "--keep", "x"]));

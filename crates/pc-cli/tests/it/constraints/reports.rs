@@ -150,7 +150,7 @@ fn a_mass_of_the_wrong_sign_is_reported() {
 }
 
 #[test]
-fn a_start_with_values_is_reported() {
+fn a_moved_start_is_reported() {
     let off = SPHERE.replace("x = 0.6", "x = 0.7");
     let text = stderr(&pc(&off, &["run", "-", "--project-start"]));
     let note = "note: the start was moved onto the constraints:\n      x = 0.7 → 0.6585046079, z = -0.8 → -0.7525766947\n";
