@@ -115,7 +115,7 @@ pub struct DeriveArguments {
     /// How to print
     #[arg(long, default_value = "text")]
     pub format: Page,
-    /// Width of a line in columns; longer expressions are broken between two signs
+    /// Width of a line in columns; longer expressions are broken between terms
     #[arg(long, value_name = "COLUMNS", default_value_t = 100, value_parser = clap::value_parser!(u16).range(60..))]
     pub width: u16,
     /// In text: print only the first line of each equation, without the definitions of the names given to long parts
