@@ -82,7 +82,7 @@ pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
 pub struct Setting {
     /// The name of a parameter, or of something that has a start value.
     pub name: String,
-    /// Its value as written.
+    /// The value as written.
     pub value: String,
 }
 
@@ -260,9 +260,9 @@ pub struct RunArguments {
     /// parameters, separated by commas; a start that depends on them, and events, are taken into account
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub sensitivities: Vec<String>,
-    /// More columns: error(NAME), the estimated global error of each column NAME except those of --sensitivities. This is the
-    /// distance from a companion, a second motion that is integrated more accurately, by taylor at rtol 1e-16 where possible.
-    /// The summary gives the errors at the end
+    /// More columns: error(NAME), the estimated global error of each column NAME except those of --sensitivities. This error is
+    /// the distance from a companion, a second motion that is integrated more accurately, by taylor at rtol 1e-16 where
+    /// possible. The summary gives the errors at the end
     #[arg(long)]
     pub estimate: bool,
     /// Do not compare the motion at its start and at its end with a second derivation
