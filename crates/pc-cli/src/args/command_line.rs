@@ -45,7 +45,7 @@ pub struct Arguments {
 /// The commands of `pc`.
 #[derive(Clone, Debug, Subcommand)]
 pub enum Command {
-    /// Write a model to start from, which runs and explains the format
+    /// Write a starter model that runs and explains the format
     #[command(after_help = examples::NEW)]
     New(NewArguments),
     /// Check a model: consistency, conserved quantities, steady motions near its start
@@ -68,7 +68,8 @@ pub enum Command {
     Report(Box<ReportArguments>),
     /// Write a page that animates the motion
     Animate(Box<AnimateArguments>),
-    /// Integrate, linearize or check over parameters and starts, on all cores; finished members are kept after an interruption
+    /// Integrate, linearize or check a model for many parameters and starts, on all cores; finished members are kept after an
+    /// interruption
     Sweep(Box<SweepArguments>),
     /// Merge the shards of a sweep into one table
     Merge(MergeArguments),

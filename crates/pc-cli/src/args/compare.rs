@@ -31,7 +31,7 @@ pub struct CompareArguments {
     /// End time [default: that of A, or that of B]
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = options::finite)]
     pub t_end: Option<f64>,
-    /// Number of evenly spaced times to compare, start and end included [default: as for `pc run` of A]
+    /// Number of evenly spaced times at which to compare, start and end included [default: as for `pc run` of A]
     #[arg(long, value_name = "N", value_parser = options::samples)]
     pub samples: Option<usize>,
     /// Tolerances and method.
@@ -46,7 +46,7 @@ pub struct CompareArguments {
     /// Compare only these columns, separated by commas [default: all that both have]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub columns: Vec<String>,
-    /// Also compare an expression in columns and parameters of A with one in those of B (repeatable)
+    /// Also compare an expression in the columns and parameters of A with one in the columns and parameters of B (repeatable)
     #[arg(long, value_name = "EXPR=EXPR", value_parser = options::definition)]
     pub map: Vec<Setting>,
     /// How to print

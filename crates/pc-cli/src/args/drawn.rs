@@ -3,15 +3,15 @@
 use clap::Args;
 use pc_report::picture::Wanted;
 
-/// What is drawn of a motion.
+/// Which parts of a motion are drawn, and how.
 #[derive(Clone, Debug, Default, Args)]
 pub struct DrawnArguments {
     /// With --plot: draw these columns over time, separated by commas, instead of all; drift(NAME) is the relative drift of
     /// NAME and, with --estimate, error(NAME) its error
     #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "plot")]
     pub columns: Vec<String>,
-    /// With --plot: draw column Y over column X, as a path or a phase portrait; components of a vector, such as x and y, have
-    /// the same scale (repeatable)
+    /// With --plot: draw column Y against column X, as a path or a phase portrait; components of a vector, such as x and y, are
+    /// drawn to the same scale (repeatable)
     #[arg(long, value_name = "X,Y", value_parser = pair, requires = "plot")]
     pub xy: Vec<(String, String)>,
     /// With --plot: wrap these angles, separated by commas, to the range from −π to π

@@ -13,14 +13,14 @@ pub(super) fn form(text: &str) -> Result<Form, String> {
     choice(text, &Form::ALL.map(|form| (form.name(), form)), &[])
 }
 
-/// The form of this name, if it can be written as source: one in velocities.
+/// The form with this name, if it can be emitted as source code: only forms in velocities can.
 pub(super) fn emit_form(text: &str) -> Result<Variables, String> {
     let forms = Variables::ALL.into_iter().filter(|form| !form.has_momenta());
     let named: Vec<(&str, Variables)> = forms.map(|form| (form.name(), form)).collect();
     choice(text, &named, &["canonical", "lagrange", "voronets", "lie-poisson"])
 }
 
-/// The form of this name, if it can be integrated.
+/// The form with this name, if it can be integrated.
 pub(super) fn run_form(text: &str) -> Result<Variables, String> {
     choice(text, &Variables::ALL.map(|form| (form.name(), form)), &["lagrange", "voronets"])
 }

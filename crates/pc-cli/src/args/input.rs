@@ -18,7 +18,7 @@ use crate::error::CliError;
 /// any other name is that of a built-in model.
 ///
 /// # Errors
-/// [`CliError`] if it cannot be found, read or understood, or has no such parameter or start value.
+/// [`CliError`] if the model cannot be found, read or understood, or has no such parameter or start value.
 pub fn open(arguments: &ModelArguments) -> Result<Model, CliError> {
     let mut model = Model::new(document(&arguments.model)?);
     model.limit(Limits { memory: arguments.limit_memory, time: arguments.limit_time, ..Limits::default() });

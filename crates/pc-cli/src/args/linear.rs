@@ -15,7 +15,7 @@ pub enum MatrixFormat {
     Text,
     /// For programs.
     Json,
-    /// A line for each number.
+    /// One line per number.
     Csv,
 }
 
@@ -69,8 +69,8 @@ pub struct EquilibriaArguments {
     /// The model.
     #[command(flatten)]
     pub model: ModelArguments,
-    /// Bounds of a coordinate or first-order state (repeatable) [default: for angles, one turn about the start; for others,
-    /// 2 (1 + |start|) on both sides of it, beyond which equilibria may still be found]
+    /// Bounds of a coordinate or first-order state (repeatable) [default: for angles, one turn about the start; for others, 2
+    /// (1 + |start|) on either side of the start, beyond which equilibria may still be found]
     #[arg(long = "box", value_name = "NAME=FROM..TO", value_parser = bounds)]
     pub bounds: Vec<Bounds>,
     /// Number of points from which Newton's method starts
@@ -98,7 +98,7 @@ pub struct Bounds {
     pub high: f64,
 }
 
-/// The largest number of starts: more of them would take hours.
+/// The largest number of starts: more would take hours.
 const MOST_STARTS: usize = 1_000_000;
 
 fn starts(text: &str) -> Result<usize, String> {

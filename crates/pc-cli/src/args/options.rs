@@ -19,11 +19,11 @@ use crate::args::forms::{emit_form, form, method, run_form};
 pub struct ModelArguments {
     /// A file, `-` for standard input, or a built-in name
     pub model: String,
-    /// Set a parameter, or the start of a coordinate, velocity or first-order state, to a value other than in the file
+    /// Set a parameter, or the start of a coordinate, velocity or first-order state, to a value other than that in the file
     /// (repeatable)
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub set: Vec<Setting>,
-    /// Move the start onto the constraints, by the steps of Newton's method that are shortest in the kinetic metric
+    /// Move the start onto the constraints, by those steps of Newton's method that are shortest in the kinetic metric
     #[arg(long)]
     pub project_start: bool,
     /// With --project-start: coordinates and quasi-velocities, separated by commas, that keep their start values
@@ -41,13 +41,12 @@ pub struct ModelArguments {
 /// The options that choose the velocities of the equations.
 #[derive(Clone, Debug, Default, Args)]
 pub struct VelocityArguments {
-    /// With --form hamel: quasi-velocities as linear forms in the velocities x' or the quasi-velocities of the model; where
-    /// they are too few, those of the model are added
+    /// With --form hamel: quasi-velocities as linear forms in the velocities x' or the quasi-velocities of the model; if these
+    /// are too few, quasi-velocities of the model are added
     #[arg(value_name = "NAME=EXPR", value_parser = definition)]
     pub definitions: Vec<Setting>,
-    /// Independent velocities of equations in which multipliers are eliminated, separated by commas: as many
-    /// quasi-velocities as the constraints leave free, velocities x' with --form voronets [default: those whose
-    /// equations are shortest]
+    /// Independent velocities for equations in which multipliers are eliminated, separated by commas: as many quasi-velocities
+    /// as the constraints leave free, or velocities x' with --form voronets [default: those that give the shortest equations]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub independent: Vec<String>,
 }
@@ -83,7 +82,7 @@ pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
 pub struct Setting {
     /// The name of a parameter, or of something that has a start value.
     pub name: String,
-    /// Its value as written.
+    /// The value as written.
     pub value: String,
 }
 
@@ -116,10 +115,10 @@ pub struct DeriveArguments {
     /// How to print
     #[arg(long, default_value = "text")]
     pub format: Page,
-    /// Width of a line in columns; longer expressions are broken between two signs
+    /// Width of a line in columns; longer expressions are broken between terms
     #[arg(long, value_name = "COLUMNS", default_value_t = 100, value_parser = clap::value_parser!(u16).range(60..))]
     pub width: u16,
-    /// In text: print only the first line of each equation, without the meanings of names for long parts
+    /// In text: print only the first line of each equation, without the definitions of the names given to long parts
     #[arg(long)]
     pub brief: bool,
     /// Write out the definitions of the model instead of naming them
@@ -162,9 +161,9 @@ pub struct TheoryArguments {
 /// The options of the search for events.
 #[derive(Clone, Debug, Default, Args)]
 pub struct EventArguments {
-    /// Split each step into N equal parts to search for events whose functions are known only as numbers (through
-    /// constraints, momenta or tables), and more finely where in doubt; an even number of zeros within one part may be
-    /// missed [default: the file's, or 4]
+    /// Split each step into N equal parts, or more where the values leave doubt, to search for events whose functions are known
+    /// only numerically (because of constraints, momenta or tables); an even number of zeros within one part may be missed
+    /// [default: the file's, or 4]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub samples_per_step: Option<u32>,
     /// Events that follow each other ever faster are an error once the time left until they accumulate is this fraction of the
@@ -186,14 +185,14 @@ pub struct IntegrationArguments {
     /// Largest step [default: the file's, or none]
     #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = positive)]
     pub max_step: Option<f64>,
-    /// The most steps from one row to the next; events are not counted [default: 500000]
+    /// Largest number of steps from one row to the next; events do not count as steps [default: 500000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub max_steps: Option<u64>,
     /// Events.
     #[command(flatten)]
     pub events: EventArguments,
-    /// Method: auto (dop853, and bdf where stiffness is seen); adams, dop853 or taylor (not stiff); or bdf (stiff) [default: the file's, or
-    /// auto]
+    /// Method: auto (dop853, and bdf where stiffness is detected); adams, dop853 or taylor (not stiff); or bdf (stiff)
+    /// [default: the file's, or auto]
     #[arg(long, value_name = "METHOD", value_parser = method)]
     pub method: Option<Method>,
 }
@@ -244,26 +243,26 @@ pub struct RunArguments {
     #[command(flatten)]
     pub integration: IntegrationArguments,
     /// Form of the equations: poincare, canonical, reduced, lie-poisson, orthonormal or hamel (see `pc derive --help`).
-    /// Columns stay the same, except that reduced and lie-poisson lack some coordinates, and hamel adds each NAME after the
-    /// outputs [default: the file's, or poincare]
+    /// The columns are the same in every form, except that reduced and lie-poisson lack some coordinates, and hamel adds each
+    /// NAME after the outputs [default: the file's, or poincare]
     #[arg(long, value_name = "FORM", value_parser = run_form)]
     pub form: Option<Variables>,
     /// Keep an integral, or energy, at its start value by projection after each step (repeatable)
     #[arg(long, value_name = "NAME")]
     pub project: Vec<String>,
     /// More columns: the reactions of the constraints. λ_NAME is the reaction for the expression as it is written; models with
-    /// bodies also have forces F_NAME_BODY in space axes at the body's position and torques N_NAME_BODY in its axes,
-    /// as far as virtual work determines them: a component perpendicular to every possible motion is 0 here, whatever
-    /// holds the body
+    /// bodies also have forces F_NAME_BODY in space axes at the body's position and torques N_NAME_BODY in body axes,
+    /// as far as virtual work determines them: a component perpendicular to every possible motion is given as 0, whatever holds
+    /// the body
     #[arg(long, value_name = "OUTPUTS")]
     pub outputs: Option<Outputs>,
     /// More columns: the derivatives ∂x/∂p of coordinates, quasi-velocities and first-order states with respect to these
     /// parameters, separated by commas; a start that depends on them, and events, are taken into account
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub sensitivities: Vec<String>,
-    /// More columns: error(NAME), the estimated global error of each column NAME except those of --sensitivities. This is the
-    /// distance from a companion, a second motion that is integrated more accurately, by taylor at rtol 1e-16 where possible.
-    /// The summary gives the errors at the end
+    /// More columns: error(NAME), the estimated global error of each column NAME except those of --sensitivities. This error is
+    /// the distance from a companion, a second motion that is integrated more accurately, by taylor at rtol 1e-16 where
+    /// possible. The summary gives the errors at the end
     #[arg(long)]
     pub estimate: bool,
     /// Do not compare the motion at its start and at its end with a second derivation
@@ -374,7 +373,7 @@ pub struct ImportArguments {
     /// The robot, in URDF, with macros expanded; `-` for standard input
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
-    /// Let the root link move freely; it stands still otherwise
+    /// Let the root link move freely; otherwise it is fixed
     #[arg(long)]
     pub floating: bool,
     /// The model to write; standard output if it is not given
@@ -412,7 +411,7 @@ impl From<Page> for pc_print::Page {
     }
 }
 
-/// What further columns a table has.
+/// Which additional columns a table has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Outputs {
     /// The reactions of the constraints.
@@ -466,7 +465,7 @@ pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Reads a fraction from 0 to less than 1.
+/// Reads a fraction that is at least 0 and less than 1.
 fn part(text: &str) -> Result<f64, String> {
     match finite(text)? {
         value if (0.0..1.0).contains(&value) => Ok(value),

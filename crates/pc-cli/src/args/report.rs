@@ -19,8 +19,8 @@ pub struct ShownArguments {
     /// End time [default: the file's]
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = options::finite)]
     pub t_end: Option<f64>,
-    /// Number of points of each curve, and of frames, evenly spaced, start and end included [default: the file's, but at least
-    /// 601]
+    /// Number of points on each curve, and of frames, evenly spaced in time, start and end included [default: the file's, but
+    /// at least 601]
     #[arg(long, value_name = "N", value_parser = options::samples)]
     pub samples: Option<usize>,
     /// Tolerances and method.

@@ -16,8 +16,8 @@ pub struct StateArguments {
     /// Components of the state, separated by commas, that keep their start values while a steady state is looked for
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub hold: Vec<String>,
-    /// Keep the cyclic coordinates that rest, or drop all cyclic coordinates [default: keep them at an equilibrium and at the
-    /// start; drop them for a steady motion and where values are varied]
+    /// Keep the cyclic coordinates that are at rest, or drop all cyclic coordinates [default: keep them at an equilibrium and
+    /// at the start; drop them for a steady motion and where values are varied]
     #[arg(long, value_name = "WHICH", value_parser = cyclic())]
     pub cyclic: Option<Cyclic>,
 }

@@ -63,7 +63,7 @@ pub struct SweepArguments {
     /// End time [default: the file's]
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = options::finite)]
     pub t_end: Option<f64>,
-    /// Write N rows of each member, evenly spaced, start and end included, instead of the last row and the drifts
+    /// Write N rows for each member, evenly spaced, start and end included, instead of the last row and the drifts
     #[arg(long, value_name = "N", value_parser = options::samples)]
     pub rows: Option<usize>,
     /// Tolerances and method.
@@ -82,11 +82,11 @@ pub struct SweepArguments {
     /// Write the table to FILE.csv, FILE.json, FILE.npz or FILE.parquet
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
-    /// Compute only the members I, I + N, … and keep them in FILE.shard-I-of-N; `pc merge` makes one table of all N shards
+    /// Compute only the members I, I + N, … and keep them in FILE.shard-I-of-N; `pc merge` makes one table from all N shards
     #[arg(long, value_name = "I/N", value_parser = Shard::parse, conflicts_with = "plot")]
     pub shard: Option<Shard>,
     /// Draw the last row of each member into FILE.svg, FILE.png or FILE.pdf: curves over one varied value, colours over two of
-    /// them, histograms with quantiles of randomly drawn members; with --rows, curves over time
+    /// them, histograms with quantiles for randomly drawn members; with --rows, curves over time
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
     /// With --plot: draw these columns, separated by commas
@@ -148,7 +148,7 @@ impl SweepArguments {
         first(SweepOf::Run, &of_runs).or_else(|| first(SweepOf::Linearize, &of_linearizations))
     }
 
-    /// What is varied, as the options say.
+    /// What is varied, as specified by the options.
     pub(crate) fn variation(&self) -> Variation {
         let SweepArguments { vary, random, samples, seed, .. } = self;
         Variation { vary: vary.clone(), random: random.clone(), samples: *samples, seed: *seed }

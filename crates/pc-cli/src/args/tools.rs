@@ -31,7 +31,7 @@ pub enum Kind {
     Nonholonomic,
     /// Bodies on joints: an arm of two links on a column
     Joints,
-    /// Inputs, and states beside the mechanics: a pendulum with motor and controller
+    /// Inputs, and states besides those of the mechanics: a pendulum with a motor and a controller
     Control,
 }
 
