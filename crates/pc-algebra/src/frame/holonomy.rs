@@ -27,7 +27,7 @@ impl<'g> Frame<'g> {
     /// Let ω^m = a_mi dx_i + a_m0 dt be the form with ω^m(X_s) = δ_ms, s = 0..k, which is η_m dt along
     /// motions (2). By (6) dω^m(X_r, X_s) = −c_rs^m; so if n = k and the X_0..X_k are a basis, ω^m is
     /// closed if and only if c_rs^m = 0 for all r, s = 0..k, and then locally ω^m = dπ_m. If n > k this
-    /// holds on each submanifold that the constraints leave.
+    /// holds on each submanifold to which the constraints confine the motion.
     ///
     /// π_m is returned if n = k and it is [found](pc_expr::Graph::potential); it satisfies X_s π_m = δ_ms.
     ///

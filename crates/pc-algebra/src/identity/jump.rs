@@ -23,7 +23,7 @@ pub struct Jump {
 impl<'g> Neighbourhood<'g> {
     /// A jump of `value` at a surface that is crossed when the `moving` symbols change, if there is one nearby.
     ///
-    /// The surface is f = 0 of a `step` or `sign`; from points near the centre Newton's steps along ∇f lead to it. A
+    /// The surface is f = 0, where f is the argument of a `step` or `sign`; Newton steps along ∇f lead to it from points near the centre. A
     /// difference no larger than rounding errors is not a jump, and neither is a difference at a surface where f only
     /// touches zero.
     ///

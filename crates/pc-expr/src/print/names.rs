@@ -351,7 +351,7 @@ impl<'d, 'g> Page<'d, 'g> {
         named.insert(part);
     }
 
-    /// The number of characters of the page with names, and of its widest line.
+    /// The number of characters on the page when names are used, and in its widest line.
     fn length(&self, named: &FxHashSet<NodeId>) -> (usize, usize) {
         let mut writer = Writer::new(self.dag, Style::Book);
         let mut length = 0;

@@ -15,7 +15,7 @@ use crate::compiled::surface_slopes::SurfaceSlopes;
 use crate::error::MechError;
 use crate::system::signals::Signals;
 
-/// Motions with more surfaces than this are not held.
+/// Motions with more surfaces than this cannot be held on one side of each.
 const MOST: usize = 256;
 /// The relative difference above which rates do not count as the sum of the changes at surfaces.
 const ADDS_UP: f64 = 1e-9;

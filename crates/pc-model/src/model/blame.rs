@@ -134,8 +134,8 @@ impl Document {
         self.source.error(place, kind)
     }
 
-    /// The place in the file where an integral is requested to be kept, or the place of its definition if the
-    /// request is not in the file.
+    /// The place in the file that asks for an integral to be kept, or the place of its definition if the file does
+    /// not ask for it.
     pub(crate) fn kept_place(&self, name: &str) -> Place {
         let written = self.simulation.project.iter().find(|written| written.value == name);
         let integral = || self.integrals.iter().find(|integral| integral.name.text == name);

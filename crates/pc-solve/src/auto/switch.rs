@@ -71,7 +71,7 @@ impl<F: VectorField> fmt::Debug for Auto<F> {
 
 impl<F: VectorField> Auto<F> {
     /// Starts at y(t0) = y0, one number per component; the method chosen in the options is ignored,
-    /// and their choices for implicit equations apply to the BDF formulas.
+    /// but the options for implicit equations apply to the BDF method.
     ///
     /// # Errors
     /// As for [`Cvode::new`] and [`Dop853::new`].

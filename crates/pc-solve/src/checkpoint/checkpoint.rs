@@ -60,8 +60,8 @@ pub(crate) struct Past {
     /// The status of each event.
     pub(crate) events: Vec<EventPast>,
     /// The events at the time of the checkpoint that are still to be applied, each with the
-    /// magnitude above which its function then counts as different from zero, and the side of zero
-    /// that the function takes next.
+    /// magnitude above which its function then counts as nonzero, and the side of zero on which the
+    /// function will be next.
     pub(crate) due: Vec<(usize, f64, f64)>,
 }
 

@@ -60,7 +60,7 @@ impl<P> Resumable<P> {
 }
 
 impl<P, M> Resumable<P, M> {
-    /// Sets the method; [`Options`] choose one of the built-in methods.
+    /// Sets the method; with [`Options`], one of the built-in methods.
     pub fn method<N>(self, method: N) -> Resumable<P, N> {
         let Resumable { parts, from, every, .. } = self;
         Resumable { parts, from, method, every }

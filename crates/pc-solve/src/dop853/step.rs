@@ -211,7 +211,7 @@ impl<F: VectorField> Dop853<F> {
         (100.0 * h).min(by_rates).min(farthest)
     }
 
-    /// The error for steps that become too short, or that cannot be made, because of what `failed`.
+    /// The error for steps that become too short or cannot be taken; `failed` gives the cause.
     fn too_short(&mut self, failed: Option<(Reason, Failure)>) -> SolveError {
         if let Some((reason, failure)) = failed {
             return self.failed(reason, Some(failure));

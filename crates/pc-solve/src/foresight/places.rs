@@ -99,7 +99,7 @@ impl Places {
         }
     }
 
-    /// Whether there is never a time to examine.
+    /// Whether there are no times to examine at all.
     pub(crate) fn are_absent(&self) -> bool {
         matches!(self.dependence, TimeDependence::Absent) && self.steep.is_none()
     }

@@ -72,7 +72,7 @@ impl<'a, F: VectorField> Solve<'a, F> {
 }
 
 impl<'a, F: VectorField, M, E> Solve<'a, F, M, E> {
-    /// Sets the method; [`Options`] choose one of the built-in methods.
+    /// Sets the method; with [`Options`], one of the built-in methods.
     pub fn method<N: IntegrationMethod<F>>(self, method: N) -> Solve<'a, F, N, E> {
         let Solve { field, t0, y0, events, .. } = self;
         Solve { field, t0, y0, method, events }

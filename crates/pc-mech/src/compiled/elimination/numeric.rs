@@ -101,8 +101,8 @@ impl Staged {
         Staged { schur: Some(Box::new(schur)), ..self }
     }
 
-    /// The number of operations needed to compute w; each operation of a factorisation counts as the
-    /// straight-line operations that take as long.
+    /// The number of operations needed to compute w; each operation of a factorisation is counted as
+    /// the number of straight-line operations that take the same time.
     pub(crate) fn operations(&self) -> usize {
         let size = self.known.len() - self.dim;
         self.equations().cost().total() + OF_A_LOOP * self.solver.operations(size, self.multipliers)

@@ -34,7 +34,7 @@ def number(value: float) -> str:
 
 
 def formula(value: Any) -> str:
-    """An expression as a value of TOML, from a number, a text, an expression of this package or of SymPy, or a function of names.
+    """An expression as a TOML value, made from a number, a string, an expression of this package or of SymPy, or a function of names.
 
     A function is called with expressions for the names of its parameters, which are names of the model.
     """
