@@ -781,7 +781,9 @@ pc_status pc_model_hold_start(pc_model *model, const char *name, pc_error **erro
  * Sets whether the reactions of the constraints are observed; the name of each is `λ_` followed by
  * that of its constraint. Any value but 0 means yes.
  */
-pc_status pc_model_observe_reactions(pc_model *model, int yes, pc_error **error);
+pc_status pc_model_observe_reactions(pc_model *model,
+                                     int yes,
+                                     pc_error **error);
 
 /**
  * Sets whether systems of the model are derived with their derivatives with respect to parameters,
@@ -921,9 +923,7 @@ pc_status pc_model_add_constraint(pc_model *model,
  * Sets the Lagrangian L(t, x, η), which may contain x' too. It cannot be combined with a kinetic
  * or potential energy.
  */
-pc_status pc_model_set_lagrangian(pc_model *model,
-                                  const char *expression,
-                                  pc_error **error);
+pc_status pc_model_set_lagrangian(pc_model *model, const char *expression, pc_error **error);
 
 /**
  * Sets the kinetic energy.
@@ -1434,7 +1434,8 @@ const char *pc_system_constraint_name(const pc_system *system, size_t index);
  * The name of a reaction, `λ_` followed by the name of its constraint, counted from 0; NULL beyond
  * the last.
  */
-const char *pc_system_reaction_name(const pc_system *system, size_t index);
+const char *pc_system_reaction_name(const pc_system *system,
+                                    size_t index);
 
 /**
  * Writes the time and state from which the model starts. `t` may be NULL.
@@ -2040,7 +2041,10 @@ pc_status pc_kernel_set_parameters(pc_kernel *kernel,
  * step helps. pc_system_rhs at the same (t, y) says why. It has the form of the functions that
  * GSL's odeiv2 takes, with the kernel as `params`.
  */
-int pc_kernel_rhs(double t, const double *y, double *ydot, void *kernel);
+int pc_kernel_rhs(double t,
+                  const double *y,
+                  double *ydot,
+                  void *kernel);
 
 /**
  * Writes ∂f/∂y, dim × dim and column-major; otherwise it is like pc_kernel_rhs. The first call

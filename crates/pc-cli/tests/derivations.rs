@@ -36,7 +36,7 @@ fn commands_derive_equations_once() {
         ("run tilted-disk --sensitivities r,m --plot OUT.svg -o OUT.csv", 1),
         ("report heavy-top-euler -o OUT.html", 1),
         ("report vertical-disk -o OUT.html", 2),
-        ("animate double-pendulum -o OUT.html", 1),
+        ("animate double-pendulum-cartesian -o OUT.html", 1),
         ("derive vertical-disk --form lagrange", 1),
         ("theory vertical-disk", 1),
         ("emit vertical-disk", 1),
