@@ -677,13 +677,13 @@ const char *pc_error_message(const pc_error *error);
 size_t pc_error_line(const pc_error *error);
 
 /**
- * The column at which the text at fault begins, in characters counted from 1; 0 if there is none,
+ * The column at which the offending text begins, in characters counted from 1; 0 if there is none,
  * and for NULL.
  */
 size_t pc_error_column(const pc_error *error);
 
 /**
- * The byte at which the text at fault begins, counted from 0; 0 if there is none, and for NULL.
+ * The byte at which the offending text begins, counted from 0; 0 if there is none, and for NULL.
  */
 size_t pc_error_offset(const pc_error *error);
 

@@ -106,7 +106,7 @@ impl Linearizer {
         Ok(result)
     }
 
-    /// The linearization on the states that satisfy the constraints, at any such state, steady or not; it
+    /// The linearization at a state that satisfies the constraints, steady or not, restricted to such states; it
     /// includes all cyclic coordinates. The reduced state is the deviation from the solution that passes
     /// through this state.
     ///

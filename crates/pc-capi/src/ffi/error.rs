@@ -70,14 +70,14 @@ pub extern "C" fn pc_error_line(error: Option<&pc_error>) -> usize {
     place(error).line
 }
 
-/// The column at which the text at fault begins, in characters counted from 1; 0 if there is none,
+/// The column at which the offending text begins, in characters counted from 1; 0 if there is none,
 /// and for NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_error_column(error: Option<&pc_error>) -> usize {
     place(error).column
 }
 
-/// The byte at which the text at fault begins, counted from 0; 0 if there is none, and for NULL.
+/// The byte at which the offending text begins, counted from 0; 0 if there is none, and for NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_error_offset(error: Option<&pc_error>) -> usize {
     place(error).offset

@@ -298,7 +298,7 @@ impl<'g> System<'g> {
         System { integrals: put(&self.integrals), outputs: put(&self.outputs), ..self.clone() }
     }
 
-    /// The same system with further outputs, after its own.
+    /// The same system with further outputs appended to its own.
     #[must_use]
     pub fn with_more_outputs(&self, more: impl IntoIterator<Item = (String, Expr<'g>)>) -> System<'g> {
         System { outputs: self.outputs.iter().cloned().chain(more).collect(), ..self.clone() }

@@ -180,7 +180,7 @@ impl<'g> Assembly<'g> {
         self.document.error(&self.document.energy_place(), MeaningError::NoForm { message, help })
     }
 
-    /// The values at the start of functions of time, coordinates, the quasi-velocities of a free system and
+    /// The initial values of functions of time, coordinates, the quasi-velocities of a free system and
     /// parameters.
     fn numbers_at_start(&self, free: &System<'g>, functions: &[Expr<'g>]) -> Result<Vec<f64>, ModelError> {
         let at = [free.parameters(), &self.at_start()].concat();

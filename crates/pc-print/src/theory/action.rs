@@ -1,4 +1,4 @@
-//! Hamilton–Jacobi's equation, and the results on an action.
+//! The Hamilton–Jacobi equation, and what is found about an action that the text gives.
 
 use pc_analysis::ProposedAction;
 use pc_mech::{Expr, Identity};

@@ -234,7 +234,7 @@ fn draw_curve(drawing: &mut Drawing, curve: &Curve, (across, up): (&Axis, &Axis)
     pieces().filter(|piece| piece.len() > 1).for_each(|piece| drawing.line(simplified(piece, most), ink));
 }
 
-/// Draws cells with a colour for each value, and a scale of the colours.
+/// Draws cells, each in the colour of its value, and the colour scale.
 fn cells(
     drawing: &mut Drawing,
     (across, up): (&Axis, &Axis),

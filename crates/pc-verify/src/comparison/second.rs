@@ -36,8 +36,8 @@ const FEWEST: usize = 3;
 /// inverse of a full mass matrix then takes a second, and ten times as long for every two velocities more.
 const MOST_INVERTED: usize = 9;
 
-/// The largest number of velocities for which an orthonormal frame is derived only to be compared: its roots
-/// are nested.
+/// The largest number of velocities for which an orthonormal frame is derived merely for the comparison: its nested roots make it
+/// expensive.
 const MOST_ORTHONORMAL: usize = 3;
 
 /// The second derivation of a model.
