@@ -39,7 +39,7 @@ fn commands_derive_equations_once() {
         ("animate double-pendulum-cartesian -o OUT.html", 1),
         ("derive vertical-disk --form lagrange", 1),
         ("theory vertical-disk", 1),
-        ("emit vertical-disk", 1),
+        ("emit vertical-disk --lang c -o OUT", 1),
     ];
     let found: Vec<(&str, usize)> =
         known.iter().map(|&(line, _)| (line, derivations_of(directory.path(), line))).collect();

@@ -27,7 +27,6 @@ pub(crate) mod frame;
 pub(crate) mod function;
 pub(crate) mod given;
 mod inertia;
-mod kept;
 pub(crate) mod orientations;
 pub(crate) mod parameters;
 pub(crate) mod resultant;

@@ -1,10 +1,10 @@
 //! The treatment of constraints, and the equations of motion under them.
 
+use std::cell::OnceCell;
+
 use pc_expr::SymbolPlaces;
 use pc_mech::{Constraint, ConstraintError, Equations, Expr, MechError, Multipliers, System};
 use pc_nonholo::{Adapted, Constrained, ConstraintKind, IntegrableCombination, NonholoError, Redundant};
-
-use crate::assembly::kept::Kept;
 
 /// A constraint with its kind.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,17 +26,15 @@ pub struct ConstraintTreatment<'g> {
     undetermined: Vec<String>,
     /// The velocities requested as independent; empty if the choice is left open.
     independent: Vec<Expr<'g>>,
-    derived: Derived<'g>,
+    chosen: OnceCell<Chosen>,
 }
 
-/// The results of derivations under the constraints.
-#[derive(Clone, Debug, Default)]
-struct Derived<'g> {
-    /// The equations with the chosen quasi-velocities as the independent ones.
-    chosen: Kept<Multipliers<'g>>,
-    constrained: Kept<Option<Constrained<'g>>>,
-    free_system: Kept<System<'g>>,
-    equations: Kept<Equations<'g>>,
+/// The indices of the dependent quasi-velocities of a choice, and the values of time and state for which it
+/// was made.
+#[derive(Clone, Debug)]
+struct Chosen {
+    at: Vec<f64>,
+    dependent: Vec<usize>,
 }
 
 /// The formulation of the constraints.
@@ -74,7 +72,7 @@ impl<'g> ConstraintTreatment<'g> {
             redundant,
             undetermined: Vec::new(),
             independent: Vec::new(),
-            derived: Derived::default(),
+            chosen: OnceCell::new(),
         }
     }
 
@@ -94,7 +92,7 @@ impl<'g> ConstraintTreatment<'g> {
             redundant,
             undetermined: Vec::new(),
             independent: Vec::new(),
-            derived: Derived::default(),
+            chosen: OnceCell::new(),
         }
     }
 
@@ -104,12 +102,12 @@ impl<'g> ConstraintTreatment<'g> {
 
     /// The same constraints in another formulation.
     pub(crate) fn in_formulation(self, formulation: ConstraintFormulation<'g>) -> ConstraintTreatment<'g> {
-        ConstraintTreatment { formulation, derived: Derived::default(), ..self }
+        ConstraintTreatment { formulation, ..self }
     }
 
     /// The same constraints with these velocities as the independent ones wherever there is a choice.
     pub(crate) fn with_independent(self, independent: Vec<Expr<'g>>) -> ConstraintTreatment<'g> {
-        ConstraintTreatment { independent, derived: Derived::default(), ..self }
+        ConstraintTreatment { independent, chosen: OnceCell::new(), ..self }
     }
 
     /// The velocities requested as independent; empty if the choice is left open.
@@ -136,17 +134,22 @@ impl<'g> ConstraintTreatment<'g> {
         held: &MultiplierFormulation<'g>,
         at: &[(Expr<'g>, f64)],
     ) -> Result<Multipliers<'g>, NonholoError> {
-        self.derived.chosen.at(at, || {
-            Ok::<_, NonholoError>(match self.independent.as_slice() {
-                [] if held.holonomic => held
-                    .multipliers
-                    .shortest(at, |chosen| chosen.in_independent_velocities(at)?.poincare())?,
-                [] => held.multipliers.shortest(at, |chosen| {
-                    Ok::<_, NonholoError>(Adapted::new(chosen, at)?.constrained()?.equations().clone())
-                })?,
-                independent => held.multipliers.with_independent(independent, at)?,
-            })
-        })
+        let there: Vec<f64> = at.iter().map(|&(_, value)| value).collect();
+        if let Some(known) = self.chosen.get().filter(|known| known.at == there) {
+            return Ok(held.multipliers.depending(known.dependent.clone()));
+        }
+        let chosen = match self.independent.as_slice() {
+            [] if held.holonomic => {
+                held.multipliers.shortest(at, |chosen| chosen.in_independent_velocities(at)?.poincare())?
+            }
+            [] => held.multipliers.shortest(at, |chosen| {
+                Ok::<_, NonholoError>(Adapted::new(chosen, at)?.constrained()?.equations().clone())
+            })?,
+            independent => held.multipliers.with_independent(independent, at)?,
+        };
+        // The choice is kept for the values for which it is first made.
+        self.chosen.get_or_init(|| Chosen { at: there, dependent: chosen.dependent().to_vec() });
+        Ok(chosen)
     }
 
     /// Checks that the requested independent quasi-velocities, if any, are the `free` ones, since there is no
@@ -237,17 +240,17 @@ impl<'g> ConstraintTreatment<'g> {
     /// # Errors
     /// [`NonholoError`] if there is no such frame.
     pub fn constrained(&self, at: &[(Expr<'g>, f64)]) -> Result<Option<Constrained<'g>>, NonholoError> {
-        self.derived.constrained.at(at, || match &self.formulation {
-            ConstraintFormulation::Free => Ok(None),
+        Ok(match &self.formulation {
+            ConstraintFormulation::Free => None,
             ConstraintFormulation::Vanishing(constrained) => {
                 self.check_no_choice(constrained.equations().system().quasi_velocities())?;
-                Ok(Some(Constrained::clone(constrained)))
+                Some(Constrained::clone(constrained))
             }
             ConstraintFormulation::Multipliers(held) if held.holonomic || held.multipliers.is_nonlinear() => {
-                Ok(None)
+                None
             }
             ConstraintFormulation::Multipliers(held) => {
-                Ok(Some(Adapted::new(&self.chosen(held, at)?, at)?.constrained()?))
+                Some(Adapted::new(&self.chosen(held, at)?, at)?.constrained()?)
             }
         })
     }
@@ -300,14 +303,6 @@ impl<'g> ConstraintTreatment<'g> {
         system: &System<'g>,
         at: &[(Expr<'g>, f64)],
     ) -> Result<Equations<'g>, NonholoError> {
-        self.derived.equations.at(at, || self.equations_at(system, at))
-    }
-
-    fn equations_at(
-        &self,
-        system: &System<'g>,
-        at: &[(Expr<'g>, f64)],
-    ) -> Result<Equations<'g>, NonholoError> {
         let equations = match self.constrained(at)? {
             Some(constrained) => constrained.equations().clone(),
             None => self.independent(system, at)?.poincare()?,
@@ -334,10 +329,10 @@ impl<'g> ConstraintTreatment<'g> {
         system: &System<'g>,
         at: &[(Expr<'g>, f64)],
     ) -> Result<System<'g>, NonholoError> {
-        self.derived.free_system.at(at, || match self.constrained(at)? {
+        match self.constrained(at)? {
             Some(constrained) => constrained.free_system(),
             None => self.independent(system, at),
-        })
+        }
     }
 
     pub(crate) fn quasi_velocities_of(

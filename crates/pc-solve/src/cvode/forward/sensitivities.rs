@@ -24,7 +24,7 @@ use crate::integration::checks::{check_length, finite, positive};
 /// [projected](VectorField::project) states, but are not projected themselves.
 ///
 /// ```
-/// use pc_solve::{Options, Sensitivities, from_fn, Solve};
+/// use pc_solve::{Sensitivities, Solve, from_fn};
 ///
 /// // ẏ = −y²: y = y₀/(1 + y₀ t), so ∂y/∂y₀ = 1/(1 + y₀ t)².
 /// let decay = from_fn(1, |_t, y, ydot| {
@@ -32,8 +32,8 @@ use crate::integration::checks::{check_length, finite, positive};
 ///     Ok(())
 /// });
 /// let sensitivities = Sensitivities::new().by_start(0);
-/// let motion = Solve::new(decay, 0.0, &[2.0]).method(&Options::default()).sensitivities(&sensitivities).run(&[1.5])?;
-/// assert!((motion.matrix(0)[0] - 1.0 / 16.0).abs() < 1e-8);
+/// let solution = Solve::new(decay, 0.0, &[2.0]).sensitivities(&sensitivities).run(&[1.5])?;
+/// assert!((solution.trajectory.matrix(0)[0] - 1.0 / 16.0).abs() < 1e-8);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
