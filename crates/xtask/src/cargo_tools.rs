@@ -21,7 +21,7 @@ pub(crate) struct CargoTool {
 impl CargoTool {
     /// Whether it is installed; where nobody installs it, it is said how to.
     pub(crate) fn is_installed(&self) -> bool {
-        let installed = succeeds(self.command().arg("--version"));
+        let installed = succeeds(self.command().arg("--help"));
         if !installed {
             println!("{0} is not installed (cargo install --locked {0})", self.name);
         }
