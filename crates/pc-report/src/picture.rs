@@ -1,6 +1,6 @@
 //! Pictures of a motion, of a sweep and of eigenvalues, for a page and for files.
 //!
-//! A [`Record`](crate::Record) is divided into [`Panel`]s, each with curves that one scale shows well;
+//! A [`Recording`](crate::Recording) is divided into [`Panel`]s, each with curves that one scale shows well;
 //! several panels form a [`Picture`], and this is turned into a [`Drawing`]: lines, areas and texts that can
 //! be written in any format. Read `panel`, the contents of common axes; `scales`, which curves share them;
 //! `motion`, the panels of a motion; `axes`, round numbers; `simplify`, the visible points; `chart`, a panel
