@@ -112,13 +112,13 @@ impl Checkpoint {
         &self.sensitivities
     }
 
-    /// The outputs of [`solve_checkpointed`](crate::solve_checkpointed) up to the time of the
+    /// The outputs of [`solve_checkpointed`](crate::Resumable) up to the time of the
     /// checkpoint.
     pub fn outputs(&self) -> &Trajectory {
         &self.outputs
     }
 
-    /// The occurrences of events in [`solve_checkpointed`](crate::solve_checkpointed) up to the
+    /// The occurrences of events in [`solve_checkpointed`](crate::Resumable) up to the
     /// time of the checkpoint.
     pub fn occurrences(&self) -> &[Occurrence] {
         &self.occurrences

@@ -78,7 +78,7 @@ pub struct SensitivitySolution {
     pub trajectory: SensitivityTrajectory,
     /// The occurrences of events, in order.
     pub occurrences: Vec<Occurrence>,
-    /// For each occurrence, the [derivatives of its time](Integration::time_derivatives), one for
+    /// For each occurrence, the [derivatives of its time](crate::Integration::time_derivatives), one for
     /// each column; not recorded for motions with checkpoints.
     pub time_derivatives: Vec<Vec<f64>>,
     /// How the integration ended; none if it failed.
