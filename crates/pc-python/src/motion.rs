@@ -152,8 +152,7 @@ impl SystemCore {
                 if !is_other {
                     return Ok(derived.renewed(&known, variables, t_start)?);
                 }
-                let graph = known.graph();
-                Ok(Derived::of(&known, &known.assemble(&graph)?, variables)?)
+                Ok(known.derived(|assembly| Derived::of(&known, assembly, variables))?)
             })
         };
         Ok((model, attended(py, &cancel, |_| Ok(()), work)?))

@@ -19,9 +19,9 @@ pub fn command(arguments: &MergeArguments) -> Result<(), CliError> {
     let file = TableFile::regular(&arguments.output, Format::OF_TABLES)?;
     let picture = Destination::plot(arguments.plot.as_deref())?;
     let shards = Shards::open(&arguments.shards)?;
-    output::write(&file, &shards.title, &shards.sheet, &shards)?;
+    output::write(&file, &shards.title, &shards.sweep_columns, &shards)?;
     if let Some(place) = picture {
-        draw(&place, &shards.title, (&shards.sheet, &shards), &arguments.columns, shards.is_random)?;
+        draw(&place, &shards.title, (&shards.sweep_columns, &shards), &arguments.columns, shards.is_random)?;
     }
     let tally = shards.tally();
     let mut said = format!("{}\n", one_line(&shards.title));

@@ -47,9 +47,9 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
         text::say(format_args!("{said}"));
         return Ok(());
     }
-    output::write(&file, sweep.title(), sweep.sheet(), &journal)?;
+    output::write(&file, sweep.title(), sweep.sweep_columns(), &journal)?;
     let drawn = place.map(|place| {
-        draw(&place, sweep.title(), (sweep.sheet(), &journal), &arguments.columns, sweep.is_random())
+        draw(&place, sweep.title(), (sweep.sweep_columns(), &journal), &arguments.columns, sweep.is_random())
     });
     journal.remove()?;
     text::say(format_args!("{said}"));
@@ -64,11 +64,11 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
 pub(super) fn draw(
     place: &Destination,
     title: &str,
-    (sheet, members): (&SweepColumns, &dyn Records),
+    (sweep_columns, members): (&SweepColumns, &dyn Records),
     columns: &[String],
     is_random: bool,
 ) -> Result<(), CliError> {
-    place.write_plot(&picture::picture(title, sheet, members, columns, is_random)?.drawing())
+    place.write_plot(&picture::picture(title, sweep_columns, members, columns, is_random)?.drawing())
 }
 
 /// An error where no member was completed.

@@ -60,7 +60,7 @@ impl Derivatives {
             .method(options)
             .events(events)
             .sensitivities(&self.wanted)
-            .run_observed(times, output);
+            .run_with_outputs(times, output);
         self.take(solved)
     }
 

@@ -27,12 +27,12 @@ const QUANTILES: [(f64, &str); 5] =
 /// # Errors
 /// [`SweepPlotError`]
 pub(crate) fn check(
-    sheet: &SweepColumns,
+    sweep_columns: &SweepColumns,
     wanted: &[String],
     counts: &[u64],
     is_random: bool,
 ) -> Result<(), SweepPlotError> {
-    chosen(sheet, wanted)?;
+    chosen(sweep_columns, wanted)?;
     let varied = counts.iter().filter(|&&count| count > 1).count();
     if is_random {
         return Ok(());
@@ -48,11 +48,11 @@ pub(crate) fn check(
 
 /// The indices of the chosen columns among those of the results; all except time and drifts if none is
 /// chosen.
-fn chosen(sheet: &SweepColumns, wanted: &[String]) -> Result<Vec<usize>, SweepPlotError> {
-    let names = sheet.numbers();
+fn chosen(sweep_columns: &SweepColumns, wanted: &[String]) -> Result<Vec<usize>, SweepPlotError> {
+    let names = sweep_columns.numbers();
     if wanted.is_empty() {
         // Time is the same in most members, and drifts are noise.
-        let is_shown = |&j: &usize| !is_time(sheet, j) && !names[j].starts_with("drift(");
+        let is_shown = |&j: &usize| !is_time(sweep_columns, j) && !names[j].starts_with("drift(");
         return Ok((0..names.len()).filter(is_shown).collect());
     }
     let place = |name: &String| {
@@ -65,8 +65,8 @@ fn chosen(sheet: &SweepColumns, wanted: &[String]) -> Result<Vec<usize>, SweepPl
 }
 
 /// Whether number `j` in a row is the time of the row.
-fn is_time(sheet: &SweepColumns, j: usize) -> bool {
-    sheet.of() == SweepOf::Run && j == 0
+fn is_time(sweep_columns: &SweepColumns, j: usize) -> bool {
+    sweep_columns.of() == SweepOf::Run && j == 0
 }
 
 /// A phrase for what a curve, a colour or a bar shows about a member.
@@ -102,30 +102,32 @@ impl Member {
 /// [`SweepError::Drawn`], and [`SweepError::Read`] if members cannot be read.
 pub fn picture(
     title: &str,
-    sheet: &SweepColumns,
+    sweep_columns: &SweepColumns,
     members: &dyn Records,
     wanted: &[String],
     is_random: bool,
 ) -> Result<Picture, SweepError> {
-    drawn(title, sheet, members, wanted, is_random).map_err(SweepError::Read)?.map_err(SweepError::Drawn)
+    drawn(title, sweep_columns, members, wanted, is_random)
+        .map_err(SweepError::Read)?
+        .map_err(SweepError::Drawn)
 }
 
 fn drawn(
     title: &str,
-    sheet: &SweepColumns,
+    sweep_columns: &SweepColumns,
     members: &dyn Records,
     wanted: &[String],
     is_random: bool,
 ) -> io::Result<Result<Picture, SweepPlotError>> {
-    let mut places = match chosen(sheet, wanted) {
+    let mut places = match chosen(sweep_columns, wanted) {
         Ok(places) => places,
         Err(error) => return Ok(Err(error)),
     };
-    let width = sheet.numbers().len();
+    let width = sweep_columns.numbers().len();
     let (mut finished, mut left) = (Vec::new(), 0);
     for record in members.records()? {
         let record = record?;
-        sheet.check(&record).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?;
+        sweep_columns.check(&record).map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))?;
         if !matches!(record.status, Status::Completed | Status::Event) {
             left += 1;
             continue;
@@ -147,10 +149,10 @@ fn drawn(
     if wanted.is_empty() {
         places = interesting(&mut finished, &places, &mut remarks);
     }
-    let names: Vec<String> = places.iter().map(|&j| sheet.numbers()[j].to_owned()).collect();
-    let varied: Vec<&str> = sheet.varied().collect();
+    let names: Vec<String> = places.iter().map(|&j| sweep_columns.numbers()[j].to_owned()).collect();
+    let varied: Vec<&str> = sweep_columns.varied().collect();
     let moving: Vec<usize> = (0..varied.len()).filter(|&j| values(&finished, j).len() > 1).collect();
-    let of = sheet.of();
+    let of = sweep_columns.of();
     let panels = match (is_random, over_time, &moving[..]) {
         (true, false, _) => {
             names.iter().enumerate().map(|(k, name)| histogram(&finished, k, name, of)).collect()

@@ -22,13 +22,13 @@ pub(crate) fn described(
     shard: Shard,
     members: u64,
     title: &str,
-    sheet: &SweepColumns,
+    sweep_columns: &SweepColumns,
 ) -> Identity {
     let entries = [
         (SHARD, shard.to_string()),
         (MEMBERS, members.to_string()),
         (TITLE, title.to_owned()),
-        (SHEET, sheet.to_text()),
+        (SHEET, sweep_columns.to_text()),
     ];
     header.extend(entries.map(|(name, value)| (name.to_owned(), value)));
     header
@@ -42,7 +42,7 @@ pub struct Shards {
     /// The title of the model.
     pub title: String,
     /// The columns.
-    pub sheet: SweepColumns,
+    pub sweep_columns: SweepColumns,
     /// Whether the members were drawn at random.
     pub is_random: bool,
 }
@@ -98,11 +98,11 @@ impl Shards {
             return Err(SweepError::Missing { shards: missing, of });
         }
         let value = |name: &str| entry(&header, name).unwrap_or_default().to_owned();
-        let sheet = SweepColumns::from_text(&value(SHEET)).ok_or(SweepError::NoShard { path })?;
+        let sweep_columns = SweepColumns::from_text(&value(SHEET)).ok_or(SweepError::NoShard { path })?;
         Ok(Shards {
             members: value(MEMBERS).parse().unwrap_or(0),
             title: value(TITLE),
-            sheet,
+            sweep_columns,
             is_random: !value(RANDOM).is_empty(),
             journals: found.into_iter().map(|(_, journal)| journal).collect(),
         })

@@ -60,14 +60,14 @@ impl SweepColumns {
         self.of
     }
 
-    /// The sheet as text.
+    /// The columns as text.
     pub(crate) fn to_text(&self) -> String {
         let columns: Vec<_> =
             self.columns.iter().map(|column| json!([column.name, column.kind as u8])).collect();
         json!([self.of.word(), self.varied, self.results, columns]).to_string()
     }
 
-    /// Reads a sheet from its text.
+    /// Reads columns from their text.
     pub(crate) fn from_text(text: &str) -> Option<SweepColumns> {
         type Parts = (String, usize, usize, Vec<(String, u8)>);
         let (of, varied, results, columns): Parts = serde_json::from_str(text).ok()?;

@@ -61,7 +61,7 @@ pub struct Sweep {
     title: String,
     deadline: Deadline,
     work: Box<dyn Work>,
-    sheet: SweepColumns,
+    sweep_columns: SweepColumns,
     threads: Option<NonZeroUsize>,
     members: u64,
     is_random: bool,
@@ -98,12 +98,12 @@ impl Sweep {
         let (members, names) = (design.members(), design.names());
         let (title, deadline) = (model.title().to_owned(), model.budget().deadline().clone());
         let (work, depends_on) = begun(wishes, model, design, observer)?;
-        let sheet = SweepColumns::new(wishes.of, &names, work.members().columns());
+        let sweep_columns = SweepColumns::new(wishes.of, &names, work.members().columns());
         Ok(Sweep {
             title,
             deadline,
             work,
-            sheet,
+            sweep_columns,
             threads: wishes.threads,
             members,
             is_random: variation.samples.is_some(),
@@ -127,10 +127,10 @@ impl Sweep {
         let (members, names) = (design.members(), design.names());
         let (title, deadline) = (model.title().to_owned(), plan.deadline.clone());
         let work = Motions::new(model, design, plan, all_rows, workers(threads), Some(derived))?;
-        let sheet = SweepColumns::new(SweepOf::Run, &names, work.members().columns());
+        let sweep_columns = SweepColumns::new(SweepOf::Run, &names, work.members().columns());
         let (counts, header) = (Vec::new(), Identity::new());
         let work = Box::new(work);
-        Ok(Sweep { title, deadline, work, sheet, threads, members, is_random: false, counts, header })
+        Ok(Sweep { title, deadline, work, sweep_columns, threads, members, is_random: false, counts, header })
     }
 
     /// The records of all members, in order.
@@ -169,8 +169,8 @@ impl Sweep {
     }
 
     /// The columns of the sweep's table.
-    pub fn sheet(&self) -> &SweepColumns {
-        &self.sheet
+    pub fn sweep_columns(&self) -> &SweepColumns {
+        &self.sweep_columns
     }
 
     /// Whether the members are drawn at random.
@@ -193,7 +193,7 @@ impl Sweep {
     /// # Errors
     /// [`SweepError::Drawn`]
     pub fn drawable(&self, columns: &[String]) -> Result<(), SweepError> {
-        picture::check(&self.sheet, columns, &self.counts, self.is_random).map_err(SweepError::Drawn)
+        picture::check(&self.sweep_columns, columns, &self.counts, self.is_random).map_err(SweepError::Drawn)
     }
 
     /// The journal beside the table with this path: a new one, or the one that the same sweep, or the same
@@ -205,7 +205,7 @@ impl Sweep {
         match shard {
             Some(shard) => {
                 let header = self.header.clone();
-                let header = shards::described(header, shard, self.members, &self.title, &self.sheet);
+                let header = shards::described(header, shard, self.members, &self.title, &self.sweep_columns);
                 Journal::open(shard.beside(table), shard, &header)
             }
             None => Journal::open(Journal::beside(table), Shard::ALL, &self.header),
@@ -223,7 +223,11 @@ impl Sweep {
         let mut progress = observer.members(before, members);
         let mut kept = Ok(());
         let ending = self.each(shard, before..members, observer, &mut |place, record| {
-            kept = self.sheet.check(&record).map_err(SweepError::from).and_then(|()| journal.append(&record));
+            kept = self
+                .sweep_columns
+                .check(&record)
+                .map_err(SweepError::from)
+                .and_then(|()| journal.append(&record));
             progress(place + 1);
             if kept.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });

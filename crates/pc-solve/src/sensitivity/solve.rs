@@ -57,7 +57,7 @@ impl<F: VectorField, E: Events> SolveSensitivities<'_, F, E> {
     /// [`SolveFailure`] with what was reached before the failure, which is nothing if the input is
     /// invalid.
     pub fn run(self, times: &[f64]) -> Result<SensitivitySolution, Box<SolveFailure<SensitivitySolution>>> {
-        self.run_observed(times, |_, _| ControlFlow::Continue(()))
+        self.run_with_outputs(times, |_, _| ControlFlow::Continue(()))
     }
 
     /// Like [`run`](SolveSensitivities::run), but passes each output (t, y) to `output`, to show
@@ -65,7 +65,7 @@ impl<F: VectorField, E: Events> SolveSensitivities<'_, F, E> {
     ///
     /// # Errors
     /// As for [`run`](SolveSensitivities::run).
-    pub fn run_observed(
+    pub fn run_with_outputs(
         self,
         times: &[f64],
         mut output: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
