@@ -104,6 +104,7 @@ int main()
         const auto [header, source] = system.emit_c("cart", 10.0);
         right = right && has(system.print(), "M + m") && system.print(PC_JSON).front() == '{';
         right = right && has(system.theory(PC_TEXT, 2, {"cos(φ)"}), "momentum of s'") && has(system.theory(), "Routh");
+        right = right && has(system.canonical_variables({{"x", "s + l*sin(φ)"}, {"P", "p_s"}}), "canonical proved");
         right = right && has(header, "cart_rhs") && has(source, "#ifdef CART_MAIN");
         const std::string text = model.text(), force = "\"bob\".\"force\" = [\"0\", \"0\", \"-m*g\"]";
         right = right && has(text, force) && pc::model::parse(text).text() == text;

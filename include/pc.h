@@ -1215,8 +1215,8 @@ pc_status pc_model_set_loop_length(pc_model *model,
 
 /**
  * Sets a function S of time, coordinates and constants that is claimed to solve
- * Hamilton–Jacobi's equation; pc_system_theory examines the claim. Motions do not depend on this
- * function.
+ * Hamilton–Jacobi's equation; pc_system_theory examines the claim, and compares the motion from
+ * the start with the one that Jacobi's theorem gives. Motions do not depend on this function.
  */
 pc_status pc_model_set_action(pc_model *model, const char *expression, pc_error **error);
 
@@ -1975,13 +1975,14 @@ pc_status pc_system_emit_c(const pc_system *system,
 
 /**
  * Prints an analysis of the motions that is made without integrating them, as `pc theory` does:
- * momenta and their brackets, Casimirs, integrals, cyclic displacements, invariant measure,
- * Chaplygin's multiplier, Hamilton-Jacobi's equation, steady motions, Routh's reduction. Each
- * claim is marked as proved, disproved or open. The integrals sought are polynomials of a `degree`
- * from 1 to 6 in the velocities, whose coefficients are polynomials in the coordinates times 1 or
- * one of the `functions`, expressions of the model; the list may be empty. `format` is a
- * pc_format. Parameters have the values of the model. Everything is derived again, which takes
- * longer than pc_system_print. Free the text with pc_string_free.
+ * momenta and their brackets, Dirac's brackets, Casimirs, integrals and their brackets, cyclic
+ * displacements, invariant measure, Chaplygin's multiplier, Hamilton-Jacobi's equation with the
+ * motion by Jacobi's theorem, steady motions, Routh's reduction. Each claim is marked as proved,
+ * disproved or open. The integrals sought are polynomials of a `degree` from 1 to 6 in the
+ * velocities, whose coefficients are polynomials in the coordinates times 1 or one of the
+ * `functions`, expressions of the model; the list may be empty. `format` is a pc_format.
+ * Parameters have the values of the model. Everything is derived again, which takes longer than
+ * pc_system_print. Free the text with pc_string_free.
  */
 pc_status pc_system_theory(const pc_system *system,
                            int format,
@@ -1990,6 +1991,22 @@ pc_status pc_system_theory(const pc_system *system,
                            size_t function_count,
                            char **text,
                            pc_error **error);
+
+/**
+ * Tests functions as canonical variables, as `pc theory --canonical` does, and prints the momenta
+ * with the result: whether the brackets (X_i, Y_j) of the functions are c δ_ij with a constant c
+ * and all others zero. The `count` functions, each with its name, are first the new coordinates
+ * X_i, then as many new momenta Y_j: expressions of the model in coordinates, velocities and the
+ * momenta p_x. `format` is a pc_format. Parameters have the values of the model. Everything is
+ * derived again. Free the text with pc_string_free.
+ */
+pc_status pc_system_canonical_variables(const pc_system *system,
+                                        int format,
+                                        const char *const *names,
+                                        const char *const *functions,
+                                        size_t count,
+                                        char **text,
+                                        pc_error **error);
 
 /**
  * Derives the equations of the model a second time, by a route that shares only the text of the

@@ -299,6 +299,19 @@ public:
             texts.push_back(function.c_str());
         return detail::text(pc_system_theory, get(), format, degree, texts.data(), texts.size());
     }
+    /// The test of functions as canonical variables: pairs of a name and an expression, first the new
+    /// coordinates, then as many new momenta.
+    std::string canonical_variables(const std::vector<std::pair<std::string, std::string>> &proposed,
+                                    pc_format format = PC_TEXT) const
+    {
+        std::vector<const char *> names, functions;
+        for (const auto &[name, function] : proposed) {
+            names.push_back(name.c_str());
+            functions.push_back(function.c_str());
+        }
+        return detail::text(pc_system_canonical_variables, get(), format, names.data(), functions.data(),
+                            names.size());
+    }
     /// How closely the equations agree with a second derivation, at random states; throws if they
     /// do not.
     std::string verify(std::size_t states = 100) const { return detail::text(pc_system_verify, get(), states); }

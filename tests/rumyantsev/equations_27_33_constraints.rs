@@ -58,9 +58,9 @@ fn equation_29_velocities_satisfy_the_constraint() {
     assert_all_equal("ẋ", found, [vx, vy, y * vx]);
 }
 
-/// θ = T for η_α = 0.
+/// θ = T for η_α = 0, the kinetic energy in (32).
 #[test]
-fn equation_31_is_the_kinetic_energy_on_the_constraint() {
+fn equation_32_contains_the_kinetic_energy_on_the_constraint() {
     let graph = Graph::new();
     let free = constrained(&graph, Expr::ZERO).free_system().unwrap();
     let [y, vx, vy] = graph.symbols(["y", "x'", "y'"]);

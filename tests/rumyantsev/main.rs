@@ -10,9 +10,11 @@
 //! | (14)–(17) | redundant coordinates | `equations_14_17_redundant_coordinates.rs` |
 //! | (18), (19) | quasi-coordinates | `equations_18_19_quasi_coordinates.rs` |
 //! | (20)–(26) | the heavy top | `equations_20_26_heavy_top.rs` |
-//! | (27)–(33) | nonholonomic constraints | `equations_27_33_constraints.rs` |
+//! | (27)–(30), (32), (33) | nonholonomic constraints | `equations_27_33_constraints.rs` |
+//! | (31) | nonholonomic constraints in canonical variables | `equation_31_canonical.rs` |
 //! | (30) | motions of nonholonomic systems, against references of 16 digits | `equation_30_motions.rs` |
 //! | (30)–(35) | forms of the nonholonomic equations, on many systems | `equations_30_35_nonholonomic.rs` |
+//! | (10)–(13), (31) | theorems of Poisson, Hamilton and Jacobi, and the full H | `theorems_from_text_rust_and_c.rs` |
 //!
 //! `cargo test --workspace --test rumyantsev equation_12` runs the tests of one equation. Where the paper has a misprint, the
 //! corrected equation is tested, and the test says what is printed.
@@ -25,6 +27,7 @@
 mod definition;
 mod equation_09_random_frames;
 mod equation_30_motions;
+mod equation_31_canonical;
 mod equations_01_07_frames;
 mod equations_08_09_poincare;
 mod equations_10_13_chetaev;
@@ -34,6 +37,7 @@ mod equations_20_26_heavy_top;
 mod equations_27_33_constraints;
 mod equations_30_35_nonholonomic;
 mod jet;
+mod theorems_from_text_rust_and_c;
 
 use pc_mech::{Equations, Expr};
 

@@ -112,12 +112,44 @@ pub enum AnalysisError {
         /// Text of the left-hand side.
         remainder: String,
     },
+    /// Too few functions are known that all operators of the frame leave unchanged.
+    #[error(
+        "the orbits of the frame are given by {needed} functions f(t, x) with X_0 f = X_s f = 0; {found} of them are known"
+    )]
+    OrbitUnknown {
+        /// The number of independent invariants that are known.
+        found: usize,
+        /// n − rank b
+        needed: usize,
+    },
+    /// Newton's method ended at constants with which the action does not have the given momenta.
+    #[error(
+        "y_s = X_s S has no solution near the given constants: the norm of the difference is {} at t = {t}{}",
+        readable(*residual),
+        listed(constants)
+    )]
+    NoConstants {
+        /// |X_s S − y_s|
+        residual: f64,
+        /// Time.
+        t: f64,
+        /// The names and values of the constants at which the residual was least.
+        constants: Vec<(String, f64)>,
+    },
+    /// The branch of an action ends along a motion.
+    #[error("the branch of the action ends at t = {t}{}", listed(coordinates))]
+    BranchEnds {
+        /// Time.
+        t: f64,
+        /// The names and values of the coordinates there.
+        coordinates: Vec<(String, f64)>,
+    },
     /// A solution of Hamilton–Jacobi's equation with too few constants.
     #[error("the integral is not complete: the matrix ∂(X_s S)/∂α has rank {rank} of {size}")]
     IncompleteIntegral {
         /// The rank at almost all points.
         rank: usize,
-        /// The number k of quasi-velocities.
+        /// rank b, the number of quasi-velocities of a frame without relations between its operators.
         size: usize,
     },
     /// Newton's method ended at a position where Jacobi's equations are not satisfied.
@@ -146,6 +178,15 @@ pub enum AnalysisError {
         symbol: String,
         /// The symbols that the function can contain.
         known: Vec<String>,
+    },
+    /// Constraints whose brackets with each other form a singular matrix.
+    #[error(
+        "the brackets of {} with each other form a singular matrix, so that there is no bracket of Dirac",
+        quoted(constraints)
+    )]
+    NotSecondClass {
+        /// Texts of the constraints.
+        constraints: Vec<String>,
     },
     /// An error of the derivation, or of the numerical evaluation of a motion.
     #[error(transparent)]

@@ -19,7 +19,11 @@
 //! [`PoissonBracket::new`] is this bracket; for all other systems [`PoissonBracket::extended`] adds time and
 //! its momentum y_0, with H + y_0 in place of H. Functions that commute with all others are
 //! [Casimirs](PoissonBracket::casimirs). The bracket of two integrals is an integral (Poisson's theorem);
-//! [`PoissonBracket::closure`] adds the new ones.
+//! [`PoissonBracket::closure`] adds the new ones, and [`PoissonBracket::algebra`] also expresses every bracket
+//! through the integrals; [`PoissonBracket::integrability`] says whether these suffice (Liouville; Mishchenko and Fomenko).
+//! [`PoissonBracket::dirac`] is the bracket under constraints on the positions, and
+//! [`PoissonBracket::canonical_variables`] says whether functions are canonical variables. Under nonholonomic constraints
+//! [`DependentMomenta`] has H of all momenta, with ∂H/∂y_α = 0 (31).
 //!
 //! ```
 //! use pc_analysis::PoissonBracket;
@@ -68,7 +72,8 @@
 //! displacements include those along cyclic coordinates. [`Rates`] differentiates along the motion, gives a
 //! [verdict](Rates::verdict) on any function, and [finds](Rates::integrals) integrals that have the form of an
 //! [`Ansatz`]; these are proved. [`Integrals::find`] combines all of these, and Casimirs;
-//! [`Integrals::add_polynomials`] adds those of a [`PolynomialAnsatz`], with parameters in their coefficients. An
+//! [`Integrals::add_polynomials`] adds those of a [`PolynomialAnsatz`], over the field of the parameters, and
+//! [`Integrals::judge_on_levels`] finds functions that are conserved where other integrals have certain values. An
 //! integral that is linear in the momenta belongs to a [`NoetherField`].
 //!
 //! ```
@@ -105,7 +110,8 @@
 //!
 //! If X_0 S + H(t, x, X_s S) = 0, then y_s = X_s S satisfies (10) along the motion (11). [`hamilton_jacobi`]
 //! substitutes S and proves the equation, and [`ProposedAction::check`] gives a verdict if there is no proof; a
-//! [`CompleteIntegral`] S(t, x, α) yields the motions through ∂S/∂α_s = β_s (Jacobi).
+//! [`CompleteIntegral`] S(t, x, α) yields the motions through ∂S/∂α_s = β_s (Jacobi), and a [`JacobiMotion`] follows one of them and
+//! compares it with that of the equations. A [`SeparatedAction`] is found where all coordinates but one are cyclic. Where rank b is below the number of coordinates, S is needed on one [`Orbit`] only.
 //!
 //! ```
 //! use pc_analysis::CompleteIntegral;
@@ -128,9 +134,9 @@
 //! [`SteadyMotion::near`] finds states in which all but the cyclic coordinates are at rest, with their first
 //! approximation. The [`Spectrum`] of the first approximation shows instability, or asymptotic stability; the
 //! [`SecondVariation`] of the energy under constant integrals shows stability (Routh; Chetaev's bundle of
-//! integrals). Each gives a [`Verdict`], which may be undecided. [`SteadySearch::near`] finds the steady motion near
-//! a start with the same values of the integrals, and applies both criteria; [`SteadyMotions::search`] finds steady
-//! motions from many starts, and the equilibria. A [`Variation`] is a motion together with deviations from it, δ̇ =
+//! integrals). Each gives a [`Verdict`], which may be undecided. [`Linearizer::steady`] finds the steady motion nearest
+//! to a start, with constraints and their reactions; [`SteadyMotions::search`] finds steady motions from many starts that
+//! have integrals in common with the start, and the equilibria. A [`Variation`] is a motion together with deviations from it, δ̇ =
 //! (∂f/∂y) δ.
 //!
 //! ```
@@ -196,17 +202,26 @@ mod reduction;
 mod stability;
 mod variation;
 
+pub use brackets::bracket_algebra::{BracketAlgebra, BracketMeaning, DenotedFunction, PairBracket};
+pub use brackets::canonical_variables::{BracketViolation, CanonicalVariables};
+pub use brackets::dependent_momenta::DependentMomenta;
+pub use brackets::integrability::Integrability;
 pub use brackets::poisson_bracket::PoissonBracket;
 pub use error::AnalysisError;
 pub use frame_facts::{FrameConstraints, FrameFacts, QuasiVelocityKind};
+pub use hamilton_jacobi::complete_integral::CompleteIntegral;
+pub use hamilton_jacobi::hamilton_jacobi;
+pub use hamilton_jacobi::jacobi_motion::{BranchEnd, JacobiMotion, MotionAgreement};
+pub use hamilton_jacobi::orbit::Orbit;
 pub use hamilton_jacobi::proposed_action::{ProposedAction, Residual};
-pub use hamilton_jacobi::{CompleteIntegral, hamilton_jacobi};
+pub use hamilton_jacobi::separated::SeparatedAction;
 pub use integrals::ansatz::Ansatz;
 pub use integrals::cyclic_displacements::CyclicDisplacement;
-pub use integrals::integral::{ConservationVerdict, Integral, Integrals, Origin};
+pub use integrals::integral::{ConservationVerdict, Integral, Integrals, LevelEquation, Origin};
 pub use integrals::noether::NoetherField;
 pub use integrals::polynomial_search::{AnsatzSearch, PolynomialAnsatz};
 pub use integrals::rates::{Conservation, Rates};
+pub use linear::conserved::Conserved;
 pub use linear::equilibria::{Equilibria, EquilibriumSearch, FoundEquilibrium};
 pub use linear::linearization::{CyclicCoordinates, Linearization};
 pub use linear::linearizer::{Leaf, Linearizer};
@@ -222,5 +237,5 @@ pub use stability::second_variation::SecondVariation;
 pub use stability::spectrum::{Eigenvalue, Spectrum, Verdict};
 pub use stability::steady_motion::{SteadyMotion, SteadyOptions, first_approximation};
 pub use stability::steady_motions::{FoundSteadyMotion, NoSteadyMotions, SteadyMotions};
-pub use stability::steady_search::{EnergyCriterion, NearbySteadyMotion, Stability, SteadySearch};
+pub use stability::steady_search::{EnergyCriterion, NearbySteadyMotion, Stability};
 pub use variation::Variation;

@@ -44,6 +44,14 @@ pub enum CliError {
         /// All commands.
         known: Vec<String>,
     },
+    /// `--reactions` in a form that has none in its variables.
+    #[error(
+        "--reactions: the form {form} has no reactions in its variables; use poincare, lagrange, voronets, maggi, kane or gibbs-appell"
+    )]
+    NoReactions {
+        /// The form.
+        form: &'static str,
+    },
     /// No built-in model has this tag.
     #[error(
         "there is no tag `{name}`{}",
@@ -84,6 +92,11 @@ pub enum CliError {
         /// The first of them.
         name: String,
     },
+    /// New coordinates without as many new momenta.
+    #[error(
+        "--canonical: give new coordinates, then as many new momenta, as in `--canonical \"Q=2*x\" \"P=p_x/2\"`"
+    )]
+    NotInPairs,
     /// Two `--set` with the same name.
     #[error("--set: `{name}` is given two values; leave one out")]
     SetTwice {
@@ -209,6 +222,7 @@ impl CliError {
             CliError::NoSuchModel { .. }
             | CliError::NoSuchCommand { .. }
             | CliError::NoSuchTag { .. }
+            | CliError::NoReactions { .. }
             | CliError::SeveralFiles { .. }
             | CliError::Read { .. }
             | CliError::UnknownValue(_)
@@ -216,6 +230,7 @@ impl CliError {
             | CliError::UnknownStart(_)
             | CliError::SetTwice { .. }
             | CliError::Definitions { .. }
+            | CliError::NotInPairs
             | CliError::BadValue { .. }
             | CliError::NothingToDraw { .. }
             | CliError::NoFrame

@@ -7,12 +7,13 @@
 //! gradient; `root_powers` makes powers of roots recognisable; `typeset` rewrites expressions for readers and measures
 //! them in `columns`; `multiplied_out` expands brackets if sines and cosines then merge; `breaks` and `seams` find
 //! the surfaces on which expressions may jump, and `held` keeps expressions on one side of these surfaces;
-//! `commensurable` finds terms of the same dimension.
+//! `commensurable` finds terms of the same dimension, and `common_denominator` the divisors.
 
 pub(crate) mod breaks;
 pub(crate) mod collect;
 mod columns;
 mod commensurable;
+mod common_denominator;
 pub(crate) mod derivative;
 pub(crate) mod held;
 pub(crate) mod independence;

@@ -6,9 +6,11 @@
 //! products, calls, values in prime fields, signs, and divisors. `graph` owns a `dag` and stays within a
 //! `budget` (`limits`, and for time a `deadline`); `expr` is the handle with which formulas are written;
 //! `subgraph` walks the nodes below some expressions, `queries` answers questions about whole expressions,
-//! `places` finds symbols in long lists, `transcription` writes expressions in another graph, and `evaluate`
+//! `undetermined` holds functions that are not given,
+//! `applied` their calls and `stand_in` the functions that take their place in numbers, `places` finds symbols in long lists, `transcription` writes expressions in another graph, and `evaluate`
 //! computes values node by node: the reference for all faster methods.
 
+pub(crate) mod applied;
 pub(crate) mod budget;
 pub(crate) mod calls;
 pub(crate) mod dag;
@@ -26,6 +28,8 @@ pub(crate) mod places;
 pub(crate) mod queries;
 pub(crate) mod regularity;
 pub(crate) mod signs;
+pub(crate) mod stand_in;
 pub(crate) mod subgraph;
 pub(crate) mod transcription;
+pub(crate) mod undetermined;
 pub(crate) mod value;

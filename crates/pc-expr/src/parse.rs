@@ -24,6 +24,6 @@ mod syntax_tree;
 mod vocabulary;
 
 pub use error::{ParseError, ParseErrorKind};
-pub use grammar::parse;
+pub use grammar::{parse, parse_with};
 pub use syntax_tree::{Ast, AstKind, Factor, MAX_DEPTH, Sign, Span};
-pub use vocabulary::{FUNCTIONS, Function, is_name, nearest};
+pub use vocabulary::{Declared, FUNCTIONS, Function, is_name, nearest};

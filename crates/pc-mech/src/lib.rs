@@ -245,6 +245,8 @@ pub use constraints::multipliers::Multipliers;
 pub use emit::function::SourceFunction;
 pub use emit::source::{EmitOptions, EmittedFile};
 pub use equations::canonical::Canonical;
+pub use equations::force_balance::ForceBalance;
+pub use equations::maggi::Maggi;
 pub use equations::poincare::Equations;
 pub use error::{
     BodyError, ConstraintError, EvaluationError, ForceError, FrameError, IntegralError, LagrangianError,

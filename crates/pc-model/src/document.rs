@@ -4,7 +4,7 @@
 //! TOML becomes a [`Document`]. Read the result first: `expression`, whose parts `text_map` locates in the file, and
 //! `contents`, section by section; `run_settings` contains the defaults of a run. Then see how the text is read: `reading` reads bytes,
 //! `syntax` parses TOML, `reader` gives typed access to its values, and `hidden` lists characters that labels must not contain.
-//! `sections`, `bodies`, `tree` with its `joints` and their `inertia`, `loops`, `inputs`, `draw` and `simulation`, with its
+//! `sections`, `bodies`, `tree` with its `joints` and their `inertia`, `loops`, `inputs`, `functions`, `draw` and `simulation`, with its
 //! `tolerance`s, read the sections; `hanging` declares the coordinates of joints, `checks` tests conditions between the sections, and
 //! `parse` combines all of these. `schema` describes the format for editors.
 
@@ -13,6 +13,7 @@ pub(crate) mod checks;
 pub(crate) mod contents;
 pub(crate) mod draw;
 pub(crate) mod expression;
+pub(crate) mod functions;
 pub(crate) mod hanging;
 pub(crate) mod hidden;
 pub(crate) mod inertia;
@@ -32,8 +33,9 @@ pub(crate) mod tolerance;
 pub(crate) mod tree;
 
 pub use contents::{
-    Algebra, AlgebraDefinition, Body, Bracket, Constraint, DeclaredKind, Document, Event, Gravity,
-    HamiltonJacobi, Heading, Input, InputValue, Lagrangian, Orientation, QuasiVelocity, State, TableFile,
+    Algebra, AlgebraDefinition, Body, Bracket, Constraint, DeclaredKind, Document, Event, GivenFunction,
+    Gravity, HamiltonJacobi, Heading, Input, InputValue, Lagrangian, Orientation, QuasiVelocity, State,
+    TableFile,
 };
 pub use draw::{Draw, DrawnPlace, DrawnShape};
 pub use expression::{Expression, Located, Name, NamedExpression};

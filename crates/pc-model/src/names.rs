@@ -2,10 +2,11 @@
 //!
 //! An expression in the text becomes an expression in the graph. Read `stage` first: which names an
 //! expression may contain, depending on its place in the text. `scope` gives the meaning of a name in that
-//! place, `functions` the meaning of a function, and `rates` the meaning of derivatives with respect to time;
+//! place, `functions` and `declared` the meaning of a function, and `rates` the meaning of derivatives with respect to time;
 //! `definitions` resolves definitions in their order; `points` expresses points of bodies with joints as
 //! functions of the coordinates.
 
+pub(crate) mod declared;
 pub(crate) mod definitions;
 pub(crate) mod functions;
 pub(crate) mod points;

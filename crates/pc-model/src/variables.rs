@@ -19,17 +19,20 @@ pub enum Variables {
     /// Quasi-velocities [given](crate::Model::give_quasi_velocity) in addition to those of the text, for
     /// Hamel's equations.
     Given,
+    /// The velocities of independent coordinates, for Voronets' equations (35), and Chaplygin's.
+    IndependentVelocities,
 }
 
 impl Variables {
     /// All choices of variables.
-    pub const ALL: [Variables; 6] = [
+    pub const ALL: [Variables; 7] = [
         Variables::QuasiVelocities,
         Variables::Momenta,
         Variables::Reduced,
         Variables::ReducedMomenta,
         Variables::Orthonormal,
         Variables::Given,
+        Variables::IndependentVelocities,
     ];
 
     /// Whether the state has momenta.
@@ -52,6 +55,7 @@ impl Variables {
             Variables::ReducedMomenta => "lie-poisson",
             Variables::Orthonormal => "orthonormal",
             Variables::Given => "hamel",
+            Variables::IndependentVelocities => "voronets",
         }
     }
 }

@@ -38,9 +38,10 @@ mod theory;
 mod words;
 
 pub use equations::constraints::kind_in_words;
-pub use equations::derived::{Derived, energy_remark};
+pub use equations::derived::{Derived, SolvedBracket, energy_remark};
 pub use equations::form::Form;
 pub use equations::operations::{Operations, counted};
+pub use equations::principle::{ForceSheet, InertiaSheet, MaggiSheet, Principle};
 pub use equations::sheet::{Balance, Bracket, Brackets, Sheet, recognised};
 pub use layout::format::Page;
 pub use layout::layout::Layout;
@@ -51,7 +52,8 @@ pub use page::displayed::{
 pub use page::page::page;
 pub use theory::bracket_of::bracket_of;
 pub use theory::description::Theory;
-pub use theory::integrals::integrals_of;
+pub use theory::integrals::{integrals_of, level_in_words};
+pub use theory::linear_model::LinearModel;
 pub use theory::measure::reducing_multiplier;
 pub use theory::options::TheoryOptions;
 pub use theory::steady::{eigenvalues_in_words, stability_in_words};

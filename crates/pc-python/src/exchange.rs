@@ -56,7 +56,7 @@ impl ModelCore {
     ) -> PyResult<Vec<String>> {
         let form = variables(form)?;
         if form.has_momenta() {
-            let why = "FMUs are in velocities; use poincare, reduced, orthonormal or hamel";
+            let why = "FMUs are in velocities; use poincare, reduced, orthonormal, voronets or hamel";
             return Err(Error::Unsupported { what: "an FMU in this form", why }.into());
         }
         let version = match version {

@@ -85,7 +85,7 @@ pub(crate) fn form(name: &str) -> Result<Form, Error> {
 pub(crate) fn variables(name: &str) -> Result<Variables, Error> {
     form(name)?.variables().ok_or(Error::Unsupported {
         what: "a system in this form",
-        why: "its equations are for print; use poincare, canonical, reduced, lie-poisson, orthonormal or hamel",
+        why: "its equations are for print; use poincare, canonical, reduced, lie-poisson, orthonormal, voronets or hamel",
     })
 }
 
@@ -332,9 +332,10 @@ impl ModelCore {
         language: &str,
         degree: u32,
         functions: Vec<String>,
+        canonical: Vec<(String, String)>,
     ) -> PyResult<String> {
         let language = self::language(language)?;
-        let options = TheoryOptions { degree, functions };
+        let options = TheoryOptions { degree, functions, canonical };
         self.assembled(py, Some(Outlet::Equations(Variables::QuasiVelocities)), move |model, assembly| {
             Ok(Theory::of(model, assembly, &options)?.printed(language))
         })

@@ -24,8 +24,14 @@ def executed(path: pathlib.Path) -> Any:
 
     notebook = nbformat.read(path, as_version=4)
     metadata = notebook.metadata
+    # Whether prints that follow each other arrive as one message or two is a matter of the machine's load.
     client = nbclient.NotebookClient(
-        notebook, timeout=3000, startup_timeout=600, kernel_name="python3", record_timing=False
+        notebook,
+        timeout=3000,
+        startup_timeout=600,
+        kernel_name="python3",
+        record_timing=False,
+        coalesce_streams=True,
     )
     client.execute()
     notebook.metadata = metadata

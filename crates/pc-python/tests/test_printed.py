@@ -35,7 +35,7 @@ def test_equations_of_sympy_have_the_values_of_the_system(name: str) -> None:
 
 def test_forms() -> None:
     model = chetaev.Model.builtin("chaplygin-sleigh")
-    for form in ("poincare", "lagrange", "voronets", "reduced", "orthonormal"):
+    for form in ("poincare", "lagrange", "voronets", "reduced", "orthonormal", "maggi", "kane", "gibbs-appell"):
         equations = model.derive(form)
         assert equations.form == form and "Equations" in str(equations)
         assert "\\begin{align" in equations.latex()
@@ -44,6 +44,19 @@ def test_forms() -> None:
     assert "hamiltonian" in chetaev.Model.builtin("euler-top").derive("canonical").sympy()
     given = chetaev.Model.builtin("euler-top").derive("hamel", velocities={"u": "ω1 + ω2"})
     assert "u" in given.text
+
+
+def test_forms_without_brackets_in_sympy() -> None:
+    sympy = pytest.importorskip("sympy")
+    model = chetaev.Model.builtin("chaplygin-sleigh")
+    kane = model.derive("kane").sympy()
+    assert (kane["inertia_forces"] + kane["acceleration_terms"]).expand().is_zero_matrix
+    gibbs = model.derive("gibbs-appell").sympy()
+    rates = [sympy.Symbol(f"{eta}'", real=True) for eta in gibbs["quasi_velocities"]]
+    slopes = sympy.Matrix([gibbs["gibbs_function"].diff(rate) for rate in rates])
+    assert (slopes - kane["acceleration_terms"]).expand().is_zero_matrix
+    maggi = model.derive("maggi").sympy()
+    assert len(maggi["lagrange_expressions"]) == 3 and maggi["vanishing"].shape == (2, 1)
 
 
 def test_notebooks_show_formulas() -> None:
@@ -69,6 +82,12 @@ def test_check_and_theory() -> None:
     assert check._repr_html_().startswith("<pre>")
     theory = model.theory()
     assert "asimir" in theory.text and theory.data() and theory.latex()
+
+
+def test_canonical_variables() -> None:
+    model = chetaev.Model.from_text("[coordinates]\nx = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"")
+    theory = model.theory(degree=1, canonical={"X": "x^2", "Y": "p_x/(2*x)"})
+    assert theory.data()["canonical_variables"][-1]["verdict"] == "proved", theory.text
 
 
 def test_pages() -> None:

@@ -7,7 +7,7 @@
 //! lists the errors.
 
 mod arrays;
-mod compared;
+pub(crate) mod compared;
 pub mod error;
 pub mod found;
 mod json;

@@ -2,7 +2,8 @@
 //!
 //! The numbers of the `first` and the `second` derivation are compared as `quantities` with their `natural` sizes, including `solved`
 //! unknowns; the result is an `agreement` within the `tolerance`. Large models are compared by `projected` equations.
-//! `compare` does so at many states, `outlet` just before results are returned; `printed` compares printed expressions,
+//! `compare` does so at many states, `outlet` just before results are returned; `printed` compares printed expressions, in
+//! all `ways` in which a page states the equations,
 //! `slopes` compares derivatives, and `resets` compares states after events. `unsteady` distinguishes jumps and
 //! rounding errors from errors of derivation.
 
@@ -20,3 +21,4 @@ pub(crate) mod slopes;
 pub(crate) mod solved;
 pub(crate) mod tolerance;
 pub(crate) mod unsteady;
+pub(crate) mod ways;

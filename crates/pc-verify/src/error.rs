@@ -81,6 +81,12 @@ pub enum Unable {
         /// The name.
         name: String,
     },
+    /// A call of a function that is too long when it is written out.
+    #[error("`{name}` is too long when its calls are written out")]
+    TooLong {
+        /// The function.
+        name: String,
+    },
     /// d() is applied to velocities where accelerations are not known, or nested too deeply.
     #[error("d() of velocities, or nested too deeply")]
     NoRate,

@@ -460,8 +460,17 @@ t_end = 1
 fn outlets() -> Vec<Outlet> {
     let integrated =
         [Variables::QuasiVelocities, Variables::Momenta, Variables::Reduced, Variables::Orthonormal];
-    let pages =
-        [Form::Poincare, Form::Canonical, Form::Lagrange, Form::Reduced, Form::LiePoisson, Form::Orthonormal];
+    let pages = [
+        Form::Poincare,
+        Form::Canonical,
+        Form::Lagrange,
+        Form::Reduced,
+        Form::LiePoisson,
+        Form::Orthonormal,
+        Form::Maggi,
+        Form::Kane,
+        Form::GibbsAppell,
+    ];
     let sources = [Variables::QuasiVelocities, Variables::Reduced, Variables::Orthonormal];
     let all = integrated.map(Outlet::Equations).into_iter();
     all.chain(sources.map(Outlet::Source)).chain(pages.map(Outlet::Page)).collect()
@@ -479,6 +488,7 @@ fn whatever_leaves_is_compared() {
             Outlet::Source(Variables::QuasiVelocities) => "emit".to_owned(),
             Outlet::Source(variables) => variables.name().to_owned(),
             Outlet::Page(form) => format!("{} as printed", form.name()),
+            Outlet::PageWithReactions(form) => format!("{} as printed with reactions", form.name()),
         };
         assert_eq!((agreement.states, agreement.forms.as_slice()), (4, [form].as_slice()), "{outlet:?}");
         assert!(agreement.error < 1e-13, "{outlet:?}: {agreement}");

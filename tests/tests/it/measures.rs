@@ -10,6 +10,8 @@ use pc_tests::fuzz::text;
 
 use crate::divergence::Compared;
 
+const ROUTH: &str = include_str!("../../systems/rouths-sphere.toml");
+
 #[test]
 fn measures_of_random_models_are_kept() {
     let mut compared = Compared::default();
@@ -24,4 +26,17 @@ fn measures_of_random_models_are_kept() {
         compared.compare(&text, &assembly, &free, &mut Random::new(2, index));
     }
     assert!(compared.measures >= 60 && compared.varying >= 20 && compared.states >= 300, "{compared:?}");
+}
+
+/// The density of Routh's sphere is a power of a polynomial in γ, which no entry of the mass matrix shows.
+#[test]
+fn routh_s_sphere_keeps_a_measure() {
+    let document = Document::parse(Source::new("rouths-sphere.toml", ROUTH)).unwrap();
+    let graph = Graph::new();
+    let assembly = Model::new(document).assemble(&graph).unwrap();
+    let free = assembly.free_system().unwrap();
+    let mut compared = Compared::default();
+    compared.compare("Routh's sphere", &assembly, &free, &mut Random::new(1, 0));
+    assert_eq!((compared.measures, compared.varying), (1, 1));
+    assert!(compared.states >= 5 && compared.unseen == 0, "{compared:?}");
 }

@@ -90,6 +90,7 @@ const OBJECTS: &[(&str, &str)] = &[
     // The reader knows both kinds of table together.
     ("/definitions/input_table", "[inputs]\na = { WRONG = 1 }"),
     ("/definitions/input_file", "[inputs]\na = { WRONG = 1 }"),
+    ("/definitions/function", "[functions]\nV = { of = \"r\", WRONG = 1 }"),
     ("/definitions/quasi_velocity", "[quasi_velocities]\na = { WRONG = 1 }"),
     ("/definitions/state", "[states]\na = { WRONG = 1 }"),
     ("/definitions/constraint", "[constraints]\na = { WRONG = 1 }"),

@@ -47,6 +47,8 @@ fn agrees(model: &Derived<'_>, form: Form) -> bool {
         Balance::Momenta { of_velocities, right, .. } => {
             (vec!["momenta_of_velocities", "equations"], vec![of_velocities.clone(), right.clone()])
         }
+        // `pc-verify` reads the pages of principles.
+        Balance::Maggi(_) | Balance::Forces(_) => panic!("{name}: {form:?} is the form of a principle"),
     };
     let energy = if form == Form::Canonical { "hamiltonian" } else { "energy" };
     let mut everything = expressions.concat();

@@ -5,7 +5,7 @@ use pc_mech::Expr;
 use crate::brackets::poisson_bracket::PoissonBracket;
 use crate::error::AnalysisError;
 use crate::integrals::ansatz::Ansatz;
-use crate::integrals::polynomials::{Generator, combination, independent, monomials};
+use crate::integrals::polynomials::{Generator, independent, monomials};
 
 impl<'g> PoissonBracket<'g> {
     /// Whether (f, z_i) = 0 for every variable z_i, as far as the graph can tell: if so, f is an integral
@@ -17,10 +17,11 @@ impl<'g> PoissonBracket<'g> {
         Ok(self.field(f)?.iter().all(|rate| rate.is_zero()))
     }
 
-    /// A basis of the Casimirs that are linear combinations of `functions` with rational coefficients.
+    /// A basis of the Casimirs Σ a_j f_j of `functions` f_j, over the field of the rational functions of the parameters of
+    /// the system, or of all symbols of a given tensor that are no variables.
     ///
-    /// Each is proved: (C, z_i) is folded to zero. See [`linear_relations`](pc_mech::Graph::linear_relations) for
-    /// relations that may be missed.
+    /// Each is proved: (C, z_i) is folded to zero. See
+    /// [`linear_relations_over`](pc_mech::Graph::linear_relations_over) for relations that may be missed.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for a function of anything other than variables and constants.
@@ -30,7 +31,7 @@ impl<'g> PoissonBracket<'g> {
     }
 
     /// Functionally independent Casimirs that have the form of an ansatz, Σ a_jl m_j f_l with monomials m_j
-    /// in the `moving` variables and rational a_jl, and are independent of the functions known to the ansatz.
+    /// in the `moving` variables and functions a_jl of the parameters, and are independent of the functions known to the ansatz.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for an ansatz with functions of anything other than variables and constants.
@@ -53,12 +54,12 @@ impl<'g> PoissonBracket<'g> {
             self.variables().iter().map(|&z| self.along(functions, z)).collect();
         let column = |j: usize| brackets.iter().map(|row| row[j]).collect();
         let columns: Vec<Vec<Expr<'g>>> = (0..functions.len()).map(column).collect();
-        let relations = graph.linear_relations(&columns);
-        relations.iter().map(|a| combination(graph, a, functions)).collect()
+        let relations = graph.linear_relations_over(&columns, self.parameters());
+        relations.into_iter().map(|a| graph.dot(a, functions.iter().copied())).collect()
     }
 
     /// Functionally independent Casimirs that are polynomials of degree ≤ `degree` in the variables, with
-    /// rational coefficients; those of low degree come first. At most [`corank`](PoissonBracket::corank) of
+    /// functions of the parameters as coefficients; those of low degree come first. At most [`corank`](PoissonBracket::corank) of
     /// them exist; if fewer are found, the remaining Casimirs are of higher degree, rational or
     /// transcendental.
     ///

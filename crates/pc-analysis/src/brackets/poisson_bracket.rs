@@ -10,6 +10,7 @@ use pc_mech::{
 
 use crate::error::{AnalysisError, check_variables, shape};
 use crate::integrals::polynomials::independent;
+use crate::integrals::rates::Rates;
 
 /// A Poisson bracket (f, g) = P_ij ∂f/∂z_i ∂g/∂z_j of functions of the variables z, with P_ij = (z_i, z_j).
 ///
@@ -32,6 +33,13 @@ pub struct PoissonBracket<'g> {
     tensor: Matrix<Expr<'g>>,
     time_momentum: Option<Expr<'g>>,
     constants: Vec<Expr<'g>>,
+    /// The constants of which the coefficients of Casimirs may be functions.
+    parameters: Vec<Expr<'g>>,
+}
+
+/// The parameters of the system that are not signals.
+fn parameters<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
+    system.numbers().into_iter().map(|(parameter, _)| parameter).collect()
 }
 
 /// The symbols of the system that are neither variables of its bracket nor quasi-velocities: time unless it
@@ -115,6 +123,7 @@ impl<'g> PoissonBracket<'g> {
             graph: system.graph(),
             tensor: Matrix::from_fn(n + y.len(), n + y.len(), |i, j| tensor[(row(i), row(j))]),
             constants: constants(system, &variables),
+            parameters: parameters(system),
             variables,
             time_momentum: None,
         }
@@ -131,7 +140,14 @@ impl<'g> PoissonBracket<'g> {
         let variables: Vec<Expr<'g>> = [t].iter().chain(x).chain(&[y0]).chain(&y).copied().collect();
         let tensor = extended_tensor(system.frame(), system.structure(), &y);
         let constants = constants(system, &variables);
-        PoissonBracket { graph: system.graph(), tensor, variables, time_momentum: Some(y0), constants }
+        PoissonBracket {
+            graph: system.graph(),
+            tensor,
+            variables,
+            time_momentum: Some(y0),
+            constants,
+            parameters: parameters(system),
+        }
     }
 
     /// The Lie–Poisson bracket of an algebra, (y_s, y_r) = c_rs^m y_m, in the variables `y1`, `y2`, …: (12)
@@ -153,8 +169,9 @@ impl<'g> PoissonBracket<'g> {
         let entry = |s: usize, r: usize| -> Expr<'g> {
             (0..k).map(|m| Expr::from(algebra.constant(r, s, m)) * y[m]).sum()
         };
-        let (tensor, constants) = (Matrix::from_fn(k, k, entry), Vec::new());
-        PoissonBracket { graph, tensor, variables: y, time_momentum: None, constants }
+        let tensor = Matrix::from_fn(k, k, entry);
+        let (constants, parameters) = (Vec::new(), Vec::new());
+        PoissonBracket { graph, tensor, variables: y, time_momentum: None, constants, parameters }
     }
 
     /// The bracket with (z_i, z_j) = `tensor`_ij for the variables z, whether or not it satisfies Jacobi's
@@ -180,7 +197,8 @@ impl<'g> PoissonBracket<'g> {
             None => {
                 let mut constants = graph.symbols_of(&tensor.nonzero_entries());
                 constants.retain(|z| !variables.contains(z));
-                Ok(PoissonBracket { graph, variables, tensor, time_momentum: None, constants })
+                let parameters = constants.clone();
+                Ok(PoissonBracket { graph, variables, tensor, time_momentum: None, constants, parameters })
             }
         }
     }
@@ -192,9 +210,26 @@ impl<'g> PoissonBracket<'g> {
         self
     }
 
+    /// The same bracket for the present values of the parameters, as [`Rates::at_present`] takes them.
+    #[must_use]
+    pub fn at_present(&self, rates: &Rates<'g>) -> PoissonBracket<'g> {
+        self.with_tensor(self.tensor.map(|entry| rates.at_present(entry)))
+    }
+
+    /// The bracket of the same variables and constants with another tensor, which is skew.
+    pub(crate) fn with_tensor(&self, tensor: Matrix<Expr<'g>>) -> PoissonBracket<'g> {
+        PoissonBracket { tensor, ..self.clone() }
+    }
+
     /// The symbols that count as constants in functions.
     pub fn constants(&self) -> &[Expr<'g>] {
         &self.constants
+    }
+
+    /// The constants of which the coefficients of Casimirs may be functions: the parameters of the system, or all
+    /// symbols of a given tensor.
+    pub(crate) fn parameters(&self) -> &[Expr<'g>] {
+        &self.parameters
     }
 
     /// Checks that functions contain only variables and constants.

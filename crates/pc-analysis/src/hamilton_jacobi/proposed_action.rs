@@ -3,7 +3,9 @@
 use pc_mech::{Canonical, Expr, Graph, Identity, Neighbourhood};
 
 use crate::error::AnalysisError;
-use crate::hamilton_jacobi::{hamilton_jacobi, slopes};
+use crate::hamilton_jacobi::complete_integral::CompleteIntegral;
+use crate::hamilton_jacobi::orbit::Orbit;
+use crate::hamilton_jacobi::{remainder_on, slopes};
 
 /// The number of points at which the residual is evaluated in order to show the largest.
 const POINTS: u64 = 16;
@@ -17,8 +19,11 @@ pub struct ProposedAction<'g> {
     pub identity: Identity,
     /// A point where the remainder does not vanish, if one was found.
     pub refuted: Option<Residual>,
-    /// The rank of ∂(X_s S)/∂α at almost all points, which is k if the integral is complete.
+    /// The rank of ∂(X_s S)/∂α at almost all points, which is rank b if the integral is complete.
     pub rank: usize,
+    action: Expr<'g>,
+    constants: Vec<Expr<'g>>,
+    orbit: Orbit<'g>,
 }
 
 /// The value of a remainder at a point.
@@ -35,7 +40,7 @@ impl<'g> ProposedAction<'g> {
     /// terms and on numerical values `near` a point where S is defined.
     ///
     /// # Errors
-    /// As for [`hamilton_jacobi`].
+    /// As for [`hamilton_jacobi`](crate::hamilton_jacobi), and [`AnalysisError::OrbitUnknown`] if rank b < n.
     ///
     /// ```
     /// use pc_analysis::ProposedAction;
@@ -57,24 +62,64 @@ impl<'g> ProposedAction<'g> {
         constants: &[Expr<'g>],
         near: &Neighbourhood<'g>,
     ) -> Result<ProposedAction<'g>, AnalysisError> {
+        let whole = Orbit::through(canonical.system(), &[], &near.centre)?;
+        ProposedAction::check_on(canonical, action, constants, (&whole, near))
+    }
+
+    /// The verdict on S = `action` where the positions are on an orbit.
+    ///
+    /// # Errors
+    /// As for [`hamilton_jacobi`](crate::hamilton_jacobi).
+    pub fn check_on(
+        canonical: &Canonical<'g>,
+        action: Expr<'g>,
+        constants: &[Expr<'g>],
+        (orbit, near): (&Orbit<'g>, &Neighbourhood<'g>),
+    ) -> Result<ProposedAction<'g>, AnalysisError> {
         let (system, graph) = (canonical.system(), canonical.system().graph());
-        let remainder = hamilton_jacobi(canonical, action)?;
+        let remainder = remainder_on(canonical, action, orbit)?;
         let momenta = slopes(canonical, action);
         let known: Vec<_> = canonical.momenta().iter().copied().zip(momenta.iter().copied()).collect();
         let rate = system.frame().apply(0, &[action])[0];
         let terms = [rate, graph.substitute(&[canonical.hamiltonian()], &known)[0]];
+        let terms = [0, 1].map(|term| orbit.restricted(graph, &terms)[term]);
         let identity = match remainder.is_zero() {
             true => Identity::Proved,
             false => Identity::of(near.residual(graph, &[terms.to_vec()])),
         };
         let is_refuted = matches!(identity, Identity::Disproved { .. });
-        let rows: Vec<Vec<Expr<'g>>> = momenta.iter().map(|&y| graph.gradient(y, constants)).collect();
+        let rows: Vec<Vec<Expr<'g>>> =
+            momenta.iter().map(|&y| orbit.restricted(graph, &graph.gradient(y, constants))).collect();
         Ok(ProposedAction {
             refuted: if is_refuted { largest(graph, terms, near) } else { None },
             rank: graph.generic_rank(&rows),
             remainder,
             identity,
+            action,
+            constants: constants.to_vec(),
+            orbit: orbit.clone(),
         })
+    }
+
+    /// The complete integral S, if the verdict allows it: proved, or without contradiction in numbers.
+    ///
+    /// # Errors
+    /// [`AnalysisError::NotAnAction`] for an action that is refuted, or has no values; [`AnalysisError::IncompleteIntegral`] if
+    /// there are fewer than rank b constants, or more, or if they are not independent.
+    pub fn integral(&self, canonical: &Canonical<'g>) -> Result<CompleteIntegral<'g>, AnalysisError> {
+        let agrees = match self.identity {
+            Identity::Proved => true,
+            Identity::Open { rest } => rest <= Neighbourhood::ROUNDING,
+            Identity::Disproved { .. } => false,
+        };
+        if !agrees {
+            return Err(AnalysisError::NotAnAction { remainder: self.remainder.to_string() });
+        }
+        let size = self.orbit.dimension();
+        if self.rank != size || self.constants.len() != size {
+            return Err(AnalysisError::IncompleteIntegral { rank: self.rank, size });
+        }
+        CompleteIntegral::of_known(canonical, self.action, &self.constants, &self.orbit)
     }
 }
 

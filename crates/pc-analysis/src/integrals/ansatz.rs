@@ -3,11 +3,11 @@
 use pc_expr::{Expr, Function, Number, Scalar};
 
 use crate::error::AnalysisError;
-use crate::integrals::polynomials::{Generator, combination, independent, monomials};
+use crate::integrals::polynomials::{Generator, independent, monomials};
 use crate::integrals::rates::Rates;
 
-/// The form of the first integrals to be found: Σ a_jl m_j f_l with rational a_jl, monomials m_j in the
-/// quasi-velocities (or momenta) up to a degree, and given functions f_l of (t, x).
+/// The form of the first integrals to be found: Σ a_jl m_j f_l with functions a_jl of the parameters, monomials m_j in
+/// the quasi-velocities (or momenta) up to a degree, and given functions f_l of (t, x).
 #[derive(Clone, Debug)]
 pub struct Ansatz<'g> {
     /// Degree in η or y.
@@ -19,20 +19,20 @@ pub struct Ansatz<'g> {
 }
 
 impl<'g> Rates<'g> {
-    /// A basis of the integrals that are linear combinations of `functions` with rational coefficients,
+    /// A basis of the integrals Σ a_j f_j of `functions` f_j, over the field of the rational functions of the parameters,
     /// including constants and integrals that are functions of each other.
     ///
     /// The functions are of (t, x, η) or (t, x, y), and may contain parameters. Each integral is proved: its rate is
-    /// folded to zero. Parameters count as indeterminates, and the coefficients do not contain them;
-    /// [bind](Rates::with_parameters_bound) them to search for integrals at given values. See
-    /// [`linear_relations`](pc_expr::Graph::linear_relations) for integrals that may be missed.
+    /// folded to zero, for all values of the parameters; [bind](Rates::with_parameters_bound) them to search for
+    /// integrals at given values. See [`linear_relations_over`](pc_expr::Graph::linear_relations_over) for integrals
+    /// that may be missed.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for a function of a symbol that does not belong to the motion.
     pub fn integrals_among(&self, functions: &[Expr<'g>]) -> Result<Vec<Expr<'g>>, AnalysisError> {
         let rates: Vec<Vec<Expr<'g>>> = self.of_all(functions)?.into_iter().map(|rate| vec![rate]).collect();
-        let relations = self.graph.linear_relations(&rates);
-        Ok(relations.iter().map(|a| combination(self.graph, a, functions)).collect())
+        let relations = self.graph.linear_relations_over(&rates, &self.indeterminates);
+        Ok(relations.into_iter().map(|a| self.graph.dot(a, functions.iter().copied())).collect())
     }
 
     /// The integrals that have the form of the ansatz, functionally independent of each other and of the

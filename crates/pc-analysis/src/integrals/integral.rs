@@ -19,6 +19,19 @@ pub struct Integral<'g> {
     pub jumps: bool,
     /// Whether it is known to be a function of the integrals before it in the list.
     pub dependent: bool,
+    /// The equations where it is conserved, if that is not everywhere.
+    pub level: Vec<LevelEquation<'g>>,
+}
+
+/// The equation f = c of a level of an integral.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LevelEquation<'g> {
+    /// The name of the integral.
+    pub name: String,
+    /// f, a function of (t, x, η).
+    pub function: Expr<'g>,
+    /// c
+    pub value: Number,
 }
 
 /// The origin of an integral.
@@ -54,6 +67,12 @@ pub enum ConservationVerdict<'g> {
     /// The rate vanishes identically, possibly only for these values of the parameters, wherever the function
     /// does not jump.
     BetweenJumps,
+    /// The rate vanishes on a [level](Integral::level) of other integrals that contains the start, so that the function is
+    /// constant along the motion from there.
+    OnLevel {
+        /// Whether it does so for all values of the parameters.
+        always: bool,
+    },
     /// The rate is unknown, because the function depends on more than time and state, for example on
     /// reactions.
     NoFunction,
@@ -67,7 +86,7 @@ pub enum ConservationVerdict<'g> {
         /// to 1: only rounding error if the function is an integral.
         part_left: Option<f64>,
         /// The same quotient at states near the start, if the start alone does not refute conservation and every nearby
-        /// state is possible.
+        /// state is possible; otherwise at other velocities at the start, if it refutes conservation there.
         near: Option<f64>,
     },
 }
@@ -102,15 +121,15 @@ impl<'g> Integrals<'g> {
         }
     }
 
-    /// Drops integrals that were found by an ansatz and are functions of quantities that are `known` to be constant, such as
-    /// the constraints on positions.
+    /// Drops integrals that were found, by an ansatz or as Casimirs, and are functions of quantities that are `known` to be constant, such as
+    /// the constraints.
     pub fn drop_functions_of(&mut self, system: &System<'g>, known: &[Expr<'g>]) {
         let (graph, state) = (system.graph(), system.state());
         let known: Vec<Vec<Expr<'g>>> = known.iter().map(|&f| graph.gradient(f, &state)).collect();
         let rank = graph.generic_rank(&known);
         self.list.retain(|integral| {
             let rows = || [known.as_slice(), &[graph.gradient(integral.value, &state)]].concat();
-            integral.origin != Origin::Found || graph.generic_rank(&rows()) > rank
+            !matches!(integral.origin, Origin::Found | Origin::Casimir) || graph.generic_rank(&rows()) > rank
         });
     }
 
@@ -171,6 +190,12 @@ impl Integral<'_> {
     /// Whether it is proved to be conserved, possibly only for the present values of the parameters.
     pub fn is_conserved(&self) -> bool {
         self.verdict.is_conserved()
+    }
+
+    /// Whether it is proved to be constant along the motion from the start: conserved, or conserved on a level of other
+    /// integrals that contains the start.
+    pub fn is_constant_from_start(&self) -> bool {
+        self.is_conserved() || matches!(self.verdict, ConservationVerdict::OnLevel { .. })
     }
 
     /// Whether it is the energy formed with the velocities in the equations.

@@ -1,15 +1,20 @@
 //! Integrals that are polynomials in η with coefficients in a span of functions of the position.
 
-use pc_mech::{Equations, Expr, Graph, Neighbourhood, Number};
+use pc_mech::{Equations, Expr, Graph, Neighbourhood};
 
 use crate::error::AnalysisError;
-use crate::integrals::integral::{Integral, Integrals, Origin};
-use crate::integrals::polynomials::{Generator, combination, monomials};
+use crate::integrals::integral::{ConservationVerdict, Integral, Integrals, Origin};
+use crate::integrals::long_constants::{symbols_with_numbers, with_symbols};
+use crate::integrals::polynomials::{Generator, monomials};
 use crate::integrals::rates::Rates;
 use crate::integrals::search::{Search, binomial};
 
 /// The largest number of functions with unknown coefficients; a search with this many takes some seconds.
 const MOST_FUNCTIONS: usize = 600;
+
+/// The largest degree in the coordinates, and the largest number of functions if the degree is higher than the usual one.
+const HIGHEST: u32 = 4;
+const MOST_OF_HIGHER: usize = 150;
 
 /// The greatest length of the accelerations along which functions are differentiated, counted in operations
 /// of the written-out expressions.
@@ -21,15 +26,8 @@ const MOST_PRODUCTS: usize = 400;
 /// The largest number of factors without velocities in a product of known integrals.
 const MOST_OF_PLACE: u32 = 2;
 
-/// The largest degree in the parameters that coefficients may have.
-const MOST_PARAMETER_DEGREE: u32 = 4;
-
-/// The largest number of products of parameters and functions that have unknown coefficients in a search for
-/// coefficients that are polynomials in the parameters.
-const MOST_WITH_PARAMETERS: usize = 300;
-
-/// The form of the integrals to be found: Σ a_jlm m_j p_l f_m with rational a_jlm, monomials m_j in η, monomials p_l
-/// in the coordinates or in their sines and cosines, and functions f_m of (t, x), 1 among them.
+/// The form of the integrals to be found: Σ a_jlm m_j p_l f_m with functions a_jlm of the parameters, monomials m_j in η,
+/// monomials p_l in the coordinates or in their sines and cosines, and functions f_m of (t, x), 1 among them.
 #[derive(Clone, Debug)]
 pub struct PolynomialAnsatz<'g> {
     /// The largest degree in η.
@@ -58,13 +56,12 @@ pub enum AnsatzSearch {
 }
 
 impl<'g> Integrals<'g> {
-    /// Adds the integrals of an ansatz to those already known, unless they are polynomials in known ones with rational
+    /// Adds the integrals of an ansatz to those already known, unless they are polynomials in known ones with constant
     /// coefficients; those of low degree come first. Integrals that are other functions of earlier ones, such as the
     /// third component of the Runge–Lenz vector, are marked as dependent.
     ///
-    /// The integrals are sought for the present values of the parameters. If the coefficients are polynomials
-    /// in the parameters, up to a common factor, these polynomials are used and the integral is proved for
-    /// all values.
+    /// Integrals are sought over the field of the parameters, where each is proved for all their values, and, where the
+    /// present values of the parameters admit integrals, for these values.
     ///
     /// # Errors
     /// [`AnalysisError::NotAVariable`] for a function of a symbol that does not belong to the motion.
@@ -102,7 +99,7 @@ impl<'g> Integrals<'g> {
     ) -> Result<AnsatzSearch, AnalysisError> {
         let search = Search::new(equations, near);
         let graph = search.graph;
-        let rates = search.rates.with_parameters_bound();
+        let rates = &search.rates;
         rates.of_all(&ansatz.functions)?;
         let costs = equations.accelerations().into_iter().map(Expr::tree_cost);
         if costs.fold(0, u32::saturating_add) > LONGEST {
@@ -115,70 +112,127 @@ impl<'g> Integrals<'g> {
         let circular = cyclic.flat_map(|x| [x.cos(), x.sin()]);
         let functions = ansatz.functions.iter().copied().chain(circular).collect();
         let linear = PolynomialAnsatz { degree: ansatz.degree.min(1), functions };
-        let (of_linear, of_all) = (Span::new(graph, &rates, &linear, 3), Span::new(graph, &rates, ansatz, 2));
-        if let Ok(span) = &of_linear {
-            self.add_span(&search, &rates, span)?;
+        if let Ok(spans) = Spans::new(graph, rates, &linear, 3) {
+            self.add_span(&search, &spans)?;
         }
-        match of_all {
-            Ok(span) => {
-                self.add_span(&search, &rates, &span)?;
+        match Spans::new(graph, rates, ansatz, 2) {
+            Ok(spans) => {
+                self.add_span(&search, &spans)?;
+                let span = &spans.present;
                 Ok(AnsatzSearch::Made { coefficients: span.coefficients, functions: span.functions.len() })
             }
             Err(functions) => Ok(AnsatzSearch::TooMany { functions }),
         }
     }
 
-    /// Adds the integrals in a span of functions, those of low degree first.
-    fn add_span(
-        &mut self,
-        search: &Search<'_, 'g>,
-        rates: &Rates<'g>,
-        span: &Span<'g>,
-    ) -> Result<(), AnalysisError> {
-        let columns: Vec<Vec<Expr<'g>>> =
-            rates.of_all(&span.functions)?.into_iter().map(|rate| vec![rate]).collect();
-        let relations = search.graph.linear_relations(&columns);
-        for degree in 0..span.up_to_degree.len() as u32 {
-            let of_degree = relations.iter().filter(|a| span.degree(a) == degree);
-            self.add_new(search, span, &of_degree.collect::<Vec<_>>(), degree);
+    /// Adds the integrals in a span of functions, those of low degree first, and of one degree those for all values of the
+    /// parameters first.
+    fn add_span(&mut self, search: &Search<'_, 'g>, spans: &Spans<'g>) -> Result<(), AnalysisError> {
+        let bound = search.rates.with_parameters_bound();
+        let here = spans.present.integrals(&bound)?;
+        // An integral for all values of the parameters is one for the present values; long constants hide both.
+        let (always, free) = match &spans.general {
+            Some((rates, span)) if spans.has_long || !here.is_empty() => (span.integrals(rates)?, rates),
+            _ => (Vec::new(), &bound),
+        };
+        for degree in 0..spans.present.up_to_degree.len() as u32 {
+            let of_degree = |all: &[(u32, Expr<'g>)]| -> Vec<Expr<'g>> {
+                all.iter().filter(|(of, _)| *of == degree).map(|&(_, value)| value).collect()
+            };
+            let (always, here) = (of_degree(&always), of_degree(&here));
+            // As many for the present values as for all values are the same.
+            let are_same = !spans.has_long && always.len() == here.len();
+            self.add_new(search, free, always, (degree, true));
+            if !are_same {
+                self.add_new(search, &bound, here, (degree, false));
+            }
         }
         Ok(())
     }
 
-    /// Adds the relations, all of one degree, that are not polynomials in known integrals.
-    fn add_new(&mut self, search: &Search<'_, 'g>, span: &Span<'g>, relations: &[&Vec<Number>], degree: u32) {
-        let graph = search.graph;
-        let known: Vec<Expr<'g>> = self.conserved().map(|integral| search.bind(integral.value)).collect();
-        let eta = search.system().quasi_velocities();
-        let products = products(graph, &known, eta, degree);
-        let all = [known.as_slice(), &products].concat();
-        let candidate = |a: &&Vec<Number>| combination(graph, a, &span.functions);
-        let new = relations.iter().filter(|a| !is_combination(graph, &all, candidate(a)));
-        let new: Vec<(&Vec<Number>, Expr<'g>)> = new.map(|a| (*a, candidate(a))).collect();
-        // Energies of parts are combinations of each other and of the whole; each is listed nevertheless.
-        let values = products.iter().copied().chain(new.iter().map(|&(_, value)| value));
-        let columns: Vec<Vec<Expr<'g>>> = values.map(|value| vec![value]).collect();
-        let dependent: Vec<usize> =
-            graph.dependent_columns(&columns, &[]).into_iter().map(|(j, _)| j).collect();
-        let mut known = known;
-        for (place, &(relation, bound)) in (products.len()..).zip(&new) {
-            if dependent.contains(&place) {
+    /// Adds integrals, all of one degree, that are not polynomials in known integrals, with functions of the parameters that
+    /// `rates` leaves free as coefficients.
+    fn add_new(
+        &mut self,
+        search: &Search<'_, 'g>,
+        rates: &Rates<'g>,
+        candidates: Vec<Expr<'g>>,
+        (degree, always): (u32, bool),
+    ) {
+        let (graph, eta) = (search.graph, search.system().quasi_velocities());
+        let in_field = |f: Expr<'g>| with_symbols(graph, &[if always { f } else { search.bind(f) }])[0];
+        let known = self.list().iter().filter(|integral| match always {
+            true => {
+                matches!(integral.verdict, ConservationVerdict::Conserved | ConservationVerdict::BetweenJumps)
+            }
+            false => integral.is_conserved(),
+        });
+        let mut known: Vec<Expr<'g>> = known.map(|integral| in_field(integral.value)).collect();
+        let candidates: Vec<Expr<'g>> = candidates.into_iter().map(in_field).collect();
+        let numbers = symbols_with_numbers(graph, &[known.as_slice(), &candidates].concat());
+        let mut constants = rates.indeterminates.clone();
+        constants.extend(numbers.iter().map(|&(symbol, _)| symbol));
+        let before = known.clone();
+        let mut added: Vec<Expr<'g>> = Vec::new();
+        for candidate in candidates {
+            let products = products(graph, &known, eta, degree);
+            // Energies of parts are combinations of each other and of the whole; each is listed nevertheless.
+            let is_polynomial =
+                |of: &[Expr<'g>]| is_combination(graph, &[&products, of].concat(), candidate, &constants);
+            if candidate.is_zero() || is_polynomial(&before) || is_polynomial(&added) {
                 continue;
             }
-            let lifted = with_parameters(search, &span.functions, relation);
-            let value = graph.shorten(&[lifted.unwrap_or(bound)], eta)[0];
+            let value = graph.substitute(&[graph.shorten(&[candidate], eta)[0]], &numbers)[0];
             let number = 1 + self.list().iter().filter(|integral| integral.origin == Origin::Found).count();
             let integral = Integral {
                 name: format!("found {number}"),
                 value,
                 origin: Origin::Found,
-                verdict: search.proved(value),
+                verdict: match search.proved(value) {
+                    ConservationVerdict::ConservedHere if always => ConservationVerdict::Conserved,
+                    verdict => verdict,
+                },
                 jumps: false,
-                dependent: !search.is_new(&known, bound),
+                dependent: !search.is_new(&known, candidate),
+                level: Vec::new(),
             };
             self.push(integral);
-            known.push(bound);
+            added.push(candidate);
+            known.push(candidate);
         }
+    }
+}
+
+/// The functions that have unknown coefficients, for the present values of the parameters, and for all values, with the
+/// rates in which these are free, if they are others.
+struct Spans<'g> {
+    present: Span<'g>,
+    general: Option<(Rates<'g>, Span<'g>)>,
+    /// Whether the equations or the functions contain long constants, which stand for any value.
+    has_long: bool,
+}
+
+impl<'g> Spans<'g> {
+    /// As for [`Span::new`].
+    fn new(
+        graph: &'g Graph,
+        rates: &Rates<'g>,
+        ansatz: &PolynomialAnsatz<'g>,
+        usual: u32,
+    ) -> Result<Spans<'g>, usize> {
+        let functions = ansatz.functions.iter().map(|&f| rates.at_present(f)).collect();
+        let bound = PolynomialAnsatz { functions, ..*ansatz };
+        let present = Span::new(graph, &rates.with_parameters_bound(), &bound, usual)?;
+        let free = rates.with_long_constants_free(&ansatz.functions);
+        let has_long = free.is_some();
+        let are_others = has_long || rates.depend_on_present_values(&ansatz.functions);
+        let general = are_others.then(|| {
+            let rates = free.unwrap_or_else(|| rates.clone());
+            let functions = with_symbols(graph, &ansatz.functions);
+            let span = Span::new(graph, &rates, &PolynomialAnsatz { functions, ..*ansatz }, usual).ok()?;
+            Some((rates, span))
+        });
+        Ok(Spans { present, general: general.flatten(), has_long })
     }
 }
 
@@ -193,25 +247,26 @@ struct Span<'g> {
 }
 
 impl<'g> Span<'g> {
-    /// The span whose coefficients have the largest degree up to `most` that can be searched; if there are
-    /// too many functions even for degree 0, their number.
+    /// The span whose coefficients have the largest degree that can be searched, of few functions if it is above the `usual`; if
+    /// there are too many functions even for degree 0, their number.
     fn new(
         graph: &'g Graph,
         rates: &Rates<'g>,
         ansatz: &PolynomialAnsatz<'g>,
-        most: u32,
+        usual: u32,
     ) -> Result<Span<'g>, usize> {
         let (n, k, degree) = (rates.coordinates.len(), rates.moving.len(), ansatz.degree as usize);
         let of_velocities = binomial(k + degree, degree);
         let times = 1 + ansatz.functions.len();
-        for coefficients in (0..=most).rev() {
+        for coefficients in (0..=HIGHEST).rev() {
+            let most = if coefficients > usual { MOST_OF_HIGHER } else { MOST_FUNCTIONS };
             // An angle has a sine and a cosine, so it adds no fewer functions.
             let least = binomial(n + coefficients as usize, coefficients as usize);
-            if of_velocities.saturating_mul(least).saturating_mul(times) > MOST_FUNCTIONS {
+            if of_velocities.saturating_mul(least).saturating_mul(times) > most {
                 continue;
             }
             let places = place_functions(graph, rates, ansatz, coefficients);
-            if of_velocities * places.len() > MOST_FUNCTIONS {
+            if of_velocities * places.len() > most {
                 continue;
             }
             let moving: Vec<Generator<'g>> = rates.moving.iter().map(|&z| (z, ansatz.degree)).collect();
@@ -224,8 +279,19 @@ impl<'g> Span<'g> {
         Err(of_velocities.saturating_mul(times))
     }
 
+    /// The integrals in the span over the field of the parameters that stand for any value, each with its degree in η.
+    fn integrals(&self, rates: &Rates<'g>) -> Result<Vec<(u32, Expr<'g>)>, AnalysisError> {
+        let columns: Vec<Vec<Expr<'g>>> =
+            rates.of_all(&self.functions)?.into_iter().map(|rate| vec![rate]).collect();
+        let relations = rates.graph.linear_relations_over(&columns, &rates.indeterminates).into_iter();
+        let integral = |a: Vec<Expr<'g>>| {
+            (self.degree(&a), rates.graph.dot(a.iter().copied(), self.functions.iter().copied()))
+        };
+        Ok(relations.map(integral).collect())
+    }
+
     /// The degree in η of the combination with these coefficients.
-    fn degree(&self, a: &[Number]) -> u32 {
+    fn degree(&self, a: &[Expr<'g>]) -> u32 {
         let last = a.iter().rposition(|a| !a.is_zero()).unwrap_or(0);
         self.up_to_degree.iter().filter(|&&count| count <= last).count() as u32
     }
@@ -249,7 +315,8 @@ fn place_functions<'g>(
     }
     // x²/r³ + y²/r³ is 1/r: a relation of functions is not an integral.
     let columns: Vec<Vec<Expr<'g>>> = all.iter().map(|&f| vec![f]).collect();
-    let dependent: Vec<usize> = graph.dependent_columns(&columns, &[]).into_iter().map(|(j, _)| j).collect();
+    let dependent = graph.dependent_columns(&columns, &rates.indeterminates);
+    let dependent: Vec<usize> = dependent.into_iter().map(|(j, _)| j).collect();
     (0..all.len()).filter(|j| !dependent.contains(j)).map(|j| all[j]).collect()
 }
 
@@ -276,47 +343,9 @@ fn products<'g>(graph: &'g Graph, known: &[Expr<'g>], eta: &[Expr<'g>], degree: 
     all
 }
 
-/// Whether f is a linear combination, with constant coefficients, of the functions `of`, as far as
-/// fingerprints can decide.
-fn is_combination<'g>(graph: &'g Graph, of: &[Expr<'g>], f: Expr<'g>) -> bool {
+/// Whether f is a linear combination of the functions `of`, with functions of the `constants` as coefficients, as far
+/// as fingerprints can decide.
+fn is_combination<'g>(graph: &'g Graph, of: &[Expr<'g>], f: Expr<'g>, constants: &[Expr<'g>]) -> bool {
     let columns: Vec<Vec<Expr<'g>>> = of.iter().chain([&f]).map(|&f| vec![f]).collect();
-    graph.dependent_columns(&columns, &[]).iter().any(|&(j, _)| j == of.len())
-}
-
-/// The integral Σ a_i(p) f_i for all values of the parameters p that for their present values equals Σ a_i
-/// f_i up to a factor, if there is one whose coefficients are polynomials of low degree in the parameters of
-/// its rates; of several, the one of lowest degree.
-///
-/// This integral is unique up to its factor: all but the last of the functions in a relation in echelon form
-/// are independent, for these values and therefore for almost all.
-fn with_parameters<'g>(
-    search: &Search<'_, 'g>,
-    functions: &[Expr<'g>],
-    relation: &[Number],
-) -> Option<Expr<'g>> {
-    let graph = search.graph;
-    let support = (0..relation.len()).filter(|&j| !relation[j].is_zero());
-    let support: Vec<Expr<'g>> = support.map(|j| functions[j]).collect();
-    let rates = search.rates.of_all(&support).ok()?;
-    let present = graph.symbols_of(&rates);
-    let parameters = search.system().parameters().iter().map(|&(p, _)| p).filter(|p| present.contains(p));
-    let generators: Vec<Generator<'g>> = parameters.map(|p| (p, MOST_PARAMETER_DEGREE)).collect();
-    for degree in 0..=MOST_PARAMETER_DEGREE {
-        let factors = monomials(&generators, degree);
-        if factors.len() * support.len() > MOST_WITH_PARAMETERS {
-            return None;
-        }
-        let scaled = |list: &[Expr<'g>]| -> Vec<Expr<'g>> {
-            factors.iter().flat_map(|&factor| list.iter().map(move |&f| factor * f)).collect()
-        };
-        let columns: Vec<Vec<Expr<'g>>> = scaled(&rates).into_iter().map(|rate| vec![rate]).collect();
-        let all = scaled(&support);
-        let relations = graph.linear_relations(&columns).into_iter();
-        let mut found = relations.map(|a| combination(graph, &a, &all));
-        // An integral that vanishes for these values is a different one.
-        if let Some(found) = found.find(|&f| !search.bind(f).is_zero()) {
-            return Some(found);
-        }
-    }
-    None
+    graph.dependent_columns(&columns, constants).iter().any(|&(j, _)| j == of.len())
 }

@@ -4,6 +4,11 @@ use pc_algebra::may_jump;
 use pc_mech::{Canonical, Equations, Expr, Graph, System};
 
 use crate::error::{AnalysisError, check_variables};
+use crate::integrals::long_constants::{symbols_with_numbers, with_symbols};
+use crate::integrals::present_values::present_values;
+
+/// The largest number of long constants that are replaced by symbols.
+const MOST_LONG: usize = 8;
 
 /// The verdict on whether a function is constant along the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,7 +44,12 @@ pub struct Rates<'g> {
     pub(crate) coordinates: Vec<Expr<'g>>,
     /// η or y
     pub(crate) moving: Vec<Expr<'g>>,
-    parameters: Vec<(Expr<'g>, Expr<'g>)>,
+    /// What takes the place of parameters at their [present values](present_values).
+    present: Vec<(Expr<'g>, Expr<'g>)>,
+    /// The parameters with their numbers.
+    numbers: Vec<(Expr<'g>, Expr<'g>)>,
+    /// The parameters that stand for any value: coefficients of integrals may be functions of them.
+    pub(crate) indeterminates: Vec<Expr<'g>>,
     /// The symbols of η̇ with their expressions in (t, x, η).
     accelerations: Vec<(Expr<'g>, Expr<'g>)>,
     /// The symbols of y with their expressions in (t, x, η), if y = ∂L/∂η is not solved for η.
@@ -93,7 +103,9 @@ impl<'g> Rates<'g> {
             time,
             coordinates: x.to_vec(),
             moving: moving.to_vec(),
-            parameters: system.numbers(),
+            present: present_values(system),
+            numbers: system.numbers(),
+            indeterminates: system.numbers().into_iter().map(|(parameter, _)| parameter).collect(),
             accelerations: Vec::new(),
             momenta: Vec::new(),
             flow: flow.collect(),
@@ -143,7 +155,7 @@ impl<'g> Rates<'g> {
     /// As for [`of`](Rates::of).
     pub fn verdict(&self, f: Expr<'g>) -> Result<Conservation<'g>, AnalysisError> {
         let rate = self.of(f)?;
-        let (always, here) = (rate.is_zero(), self.graph.substitute(&[rate], &self.parameters)[0].is_zero());
+        let (always, here) = (rate.is_zero(), self.at_present(rate).is_zero());
         Ok(if here && self.has_jumps(f) {
             Conservation::ConservedBetweenJumps
         } else if always {
@@ -179,23 +191,66 @@ impl<'g> Rates<'g> {
         let f = self.graph.substitute(&[f], &self.accelerations)[0];
         let changing: Vec<Expr<'g>> = self.flow.iter().map(|&(symbol, _)| symbol).collect();
         let number = |&(symbol, value): &(Expr<'g>, Expr<'g>)| Some((symbol, value.constant()?.to_f64()));
-        let numbers: Vec<(Expr<'g>, f64)> = self.parameters.iter().filter_map(number).collect();
+        let numbers: Vec<(Expr<'g>, f64)> = self.numbers.iter().filter_map(number).collect();
         // What cannot be evaluated is not known to be without jumps.
         may_jump(self.graph, f, &changing, &numbers).unwrap_or(true)
     }
 
-    /// The derivative with the parameters replaced by their numbers.
+    /// The function for the present values of the parameters: those that are short rationals are replaced by
+    /// them, and multiples of each other by one of them.
+    pub fn at_present(&self, f: Expr<'g>) -> Expr<'g> {
+        self.graph.substitute(&[f], &self.present)[0]
+    }
+
+    /// The derivative for the present values of the parameters. Those that are no short rationals, such as √2, stay
+    /// symbols, and those that are simple multiples of each other become multiples of one.
     #[must_use]
     pub fn with_parameters_bound(&self) -> Rates<'g> {
         let bind = |pairs: &[(Expr<'g>, Expr<'g>)]| -> Vec<_> {
-            pairs.iter().map(|&(s, rate)| (s, self.graph.substitute(&[rate], &self.parameters)[0])).collect()
+            pairs.iter().map(|&(s, rate)| (s, self.at_present(rate))).collect()
         };
+        let is_replaced = |p: &Expr<'g>| self.present.iter().any(|(replaced, _)| replaced == p);
         Rates {
             flow: bind(&self.flow),
             accelerations: bind(&self.accelerations),
             momenta: bind(&self.momenta),
-            parameters: Vec::new(),
+            present: Vec::new(),
+            indeterminates: self.indeterminates.iter().copied().filter(|p| !is_replaced(p)).collect(),
             ..self.clone()
         }
+    }
+
+    /// The derivative with a symbol that stands for any value in the place of each long constant; `None` if there are none in the
+    /// rates and in these functions, or too many.
+    pub(crate) fn with_long_constants_free(&self, functions: &[Expr<'g>]) -> Option<Rates<'g>> {
+        let free = |pairs: &[(Expr<'g>, Expr<'g>)]| -> Vec<(Expr<'g>, Expr<'g>)> {
+            let (symbols, rates): (Vec<_>, Vec<_>) = pairs.iter().copied().unzip();
+            symbols.into_iter().zip(with_symbols(self.graph, &rates)).collect()
+        };
+        let (flow, accelerations, momenta) =
+            (free(&self.flow), free(&self.accelerations), free(&self.momenta));
+        let written = flow.iter().map(|&(_, rate)| rate).chain(with_symbols(self.graph, functions));
+        let new = symbols_with_numbers(self.graph, &written.collect::<Vec<_>>()).into_iter();
+        let new: Vec<Expr<'g>> = new.map(|(symbol, _)| symbol).collect();
+        (1..=MOST_LONG).contains(&new.len()).then(|| Rates {
+            flow,
+            accelerations,
+            momenta,
+            constants: [self.constants.as_slice(), &new].concat(),
+            indeterminates: [self.indeterminates.as_slice(), &new].concat(),
+            ..self.clone()
+        })
+    }
+
+    /// Whether parameters that are replaced at their present values occur in the rates, or in these functions.
+    pub(crate) fn depend_on_present_values(&self, functions: &[Expr<'g>]) -> bool {
+        let flow = self.flow.iter().map(|&(_, rate)| rate).chain(functions.iter().copied());
+        self.are_of_present_values(&flow.collect::<Vec<_>>())
+    }
+
+    /// Whether parameters that are replaced at their present values occur in the functions.
+    pub(crate) fn are_of_present_values(&self, functions: &[Expr<'g>]) -> bool {
+        let written = self.graph.symbols_of(functions);
+        self.present.iter().any(|(replaced, _)| written.contains(replaced))
     }
 }

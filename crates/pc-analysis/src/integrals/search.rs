@@ -3,8 +3,9 @@
 use pc_mech::{Equations, Expr, Graph, Identity, Neighbourhood, System};
 
 use crate::brackets::poisson_bracket::PoissonBracket;
+use crate::integrals::ansatz::Ansatz;
 use crate::integrals::cyclic_displacements::CyclicDisplacement;
-use crate::integrals::integral::{ConservationVerdict, Integral, Integrals, Origin, bind};
+use crate::integrals::integral::{ConservationVerdict, Integral, Integrals, Origin};
 use crate::integrals::polynomials::combination;
 use crate::integrals::rates::{Conservation, Rates};
 
@@ -67,6 +68,7 @@ impl<'g> Integrals<'g> {
             verdict,
             jumps: false,
             dependent: false,
+            level: Vec::new(),
         });
     }
 }
@@ -78,7 +80,7 @@ pub(super) struct Search<'a, 'g> {
     /// The system with its parameters replaced by numbers.
     bound: System<'g>,
     pub(super) rates: Rates<'g>,
-    near: &'a Neighbourhood<'g>,
+    pub(super) near: &'a Neighbourhood<'g>,
     /// (t, x, η, z)
     variables: Vec<Expr<'g>>,
     /// Whether the brackets include all operators, so that the Lagrangian determines the motion.
@@ -120,8 +122,23 @@ impl<'a, 'g> Search<'a, 'g> {
         let part_left = self.rates.part_left(function, &self.near.centre).ok().flatten();
         let is_refuted =
             part_left.is_some_and(|left| matches!(Identity::of(left), Identity::Disproved { .. }));
-        let near = (!is_refuted && self.is_free()).then(|| self.near.residual(self.graph, &[vec![rate]]));
+        let near = match is_refuted {
+            true => None,
+            false if self.is_free() => Some(self.near.residual(self.graph, &[vec![rate]])),
+            false => self.refuted_by_velocities(rate),
+        };
         ConservationVerdict::Rate { rate, at_start, part_left, near }
+    }
+
+    /// The size of the rate at the position of the start with other velocities, which are independent under
+    /// constraints too, if it shows that the rate does not vanish.
+    fn refuted_by_velocities(&self, rate: Expr<'g>) -> Option<f64> {
+        let eta = self.system().quasi_velocities();
+        let place = self.near.centre.iter().filter(|(symbol, _)| !eta.contains(symbol));
+        let place: Vec<_> = place.map(|&(symbol, value)| (symbol, Expr::from(value))).collect();
+        let there = self.graph.substitute(&[rate], &place)[0];
+        let left = self.near.residual(self.graph, &[vec![there]]);
+        matches!(Identity::of(left), Identity::Disproved { .. }).then_some(left)
     }
 
     /// Whether every state near the start is possible: no constraints, and no relations among the coordinates.
@@ -130,8 +147,9 @@ impl<'a, 'g> Search<'a, 'g> {
         self.unconstrained && frame.coordinates().len() == frame.rank()
     }
 
+    /// The function for the present values of the parameters.
     pub(super) fn bind(&self, function: Expr<'g>) -> Expr<'g> {
-        bind(self.system(), function)
+        self.rates.at_present(function)
     }
 
     fn declared(&self) -> Vec<Integral<'g>> {
@@ -143,6 +161,7 @@ impl<'a, 'g> Search<'a, 'g> {
             verdict: self.verdict(value),
             jumps: false,
             dependent: false,
+            level: Vec::new(),
         };
         integrals.map(with_verdict).collect()
     }
@@ -173,6 +192,7 @@ impl<'a, 'g> Search<'a, 'g> {
             verdict,
             jumps: false,
             dependent: false,
+            level: Vec::new(),
         }
     }
 
@@ -210,6 +230,7 @@ impl<'a, 'g> Search<'a, 'g> {
                 origin: Origin::CyclicDisplacement { coefficients: cyclic.coefficients },
                 jumps: false,
                 dependent: false,
+                level: Vec::new(),
             }
         };
         (1..).zip(new).map(with_parameters).collect()
@@ -240,17 +261,19 @@ impl<'a, 'g> Search<'a, 'g> {
         let Some(degree) = (1..=2).rev().find(|&d| binomial(variables + d, d) <= MOST_FUNCTIONS) else {
             return;
         };
-        let bracket = PoissonBracket::new(&self.bound);
+        let bracket = PoissonBracket::new(self.system());
         let momenta: Vec<_> =
             self.bound.momentum_symbols().into_iter().zip(self.system().momenta()).collect();
-        let casimirs: Vec<(Expr<'g>, ConservationVerdict<'g>)> = bracket
-            .casimirs(degree as u32)
+        let mut found = bracket.casimirs(degree as u32);
+        if self.rates.are_of_present_values(&bracket.tensor().nonzero_entries()) {
+            found.extend(PoissonBracket::new(&self.bound).casimirs(degree as u32));
+        }
+        let casimirs: Vec<(Expr<'g>, ConservationVerdict<'g>)> = found
             .into_iter()
             .map(|casimir| (casimir, self.graph.substitute(&[casimir], &momenta)[0]))
             .map(|(casimir, value)| {
                 let here = if forced { self.verdict(value) } else { self.proved(value) };
-                let always =
-                    !forced && PoissonBracket::new(self.system()).is_casimir(casimir).unwrap_or(false);
+                let always = !forced && bracket.is_casimir(casimir).unwrap_or(false);
                 (value, if always { ConservationVerdict::Conserved } else { here })
             })
             .filter(|(_, verdict)| verdict.is_conserved())
@@ -279,6 +302,7 @@ impl<'a, 'g> Search<'a, 'g> {
                     verdict,
                     jumps: false,
                     dependent: false,
+                    level: Vec::new(),
                 });
                 known.push(bound);
             }
@@ -292,21 +316,32 @@ impl<'a, 'g> Search<'a, 'g> {
         let largest = if n <= 4 { 2 } else { 1 };
         let degree = (0..=largest).rev().find(|&d| (1 + k) * binomial(n + d, d) <= MOST_FUNCTIONS);
         let Some(degree) = degree else { return };
-        let rates = self.rates.with_parameters_bound();
-        let mut ansatz = rates.ansatz(1, degree as u32);
         let conserved = list.iter().filter(|integral| integral.verdict.is_conserved());
-        ansatz.known = conserved.map(|integral| self.bind(integral.value)).collect();
-        for (number, value) in (1..).zip(rates.integrals(&ansatz).unwrap_or_default()) {
-            let verdict = self.proved(value);
-            let value = self.graph.shorten(&[value], self.bound.quasi_velocities())[0];
-            let name = format!("found {number}");
+        let mut known: Vec<Expr<'g>> = conserved.map(|integral| self.bind(integral.value)).collect();
+        let found = |rates: &Rates<'g>, known: Vec<Expr<'g>>| {
+            rates.integrals(&Ansatz { known, ..rates.ansatz(1, degree as u32) }).unwrap_or_default()
+        };
+        let mut new = found(&self.rates.with_parameters_bound(), known.clone());
+        // An integral for all values of the parameters is one for the present values.
+        if !new.is_empty() && self.rates.depend_on_present_values(&[]) {
+            new.splice(0..0, found(&self.rates, Vec::new()));
+        }
+        let mut number = 0;
+        for value in new {
+            let bound = self.bind(value);
+            if !self.is_new(&known, bound) {
+                continue;
+            }
+            known.push(bound);
+            number += 1;
             list.push(Integral {
-                name,
-                value,
+                name: format!("found {number}"),
+                value: self.graph.shorten(&[value], self.bound.quasi_velocities())[0],
                 origin: Origin::Found,
-                verdict,
+                verdict: self.proved(value),
                 jumps: false,
                 dependent: false,
+                level: Vec::new(),
             });
         }
     }
@@ -333,6 +368,6 @@ pub(crate) fn rank_of_gradients<'g>(
 }
 
 /// n over d
-pub(super) fn binomial(n: usize, d: usize) -> usize {
+pub(crate) fn binomial(n: usize, d: usize) -> usize {
     (1..=d).fold(1, |product: usize, i| product.saturating_mul(n + 1 - i) / i)
 }

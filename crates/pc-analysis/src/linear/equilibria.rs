@@ -1,23 +1,23 @@
 //! The equilibria in a box.
 
-use pc_mech::{Equations, Matrix, Motion};
+use pc_mech::{Matrix, Motion, SingularValues};
 
 use crate::error::AnalysisError;
-use crate::integrals::integral::Integral;
+use crate::linear::conserved::Conserved;
+use crate::linear::family::Family;
 use crate::linear::linearization::Linearization;
 use crate::linear::linearizer::Linearizer;
-use crate::numeric::dense::symmetric_eigenvalues;
+use crate::numeric::equilibrated::Equilibrated;
 use crate::numeric::newton;
-use crate::stability::spectrum::Verdict;
-use crate::stability::steady_motion::SteadyOptions;
+use crate::stability::steady_motion::{SteadyOptions, first_approximation};
 use crate::stability::steady_motions::{SAME, periods, primes};
-use crate::stability::steady_search::{EnergyCriterion, Known, NearbySteadyMotion, Seeker, largest};
+use crate::stability::steady_search::{Stability, largest};
 
 /// A search for equilibria by Newton's method from many starts: the points of a low-discrepancy sequence,
 /// multiples of square roots of primes modulo 1 (R. Kronecker, H. Weyl), which are the same on every run.
 ///
 /// ```
-/// use pc_analysis::{EquilibriumSearch, Leaf, Linearizer};
+/// use pc_analysis::{Conserved, EquilibriumSearch, Leaf, Linearizer};
 /// use pc_mech::{Graph, System};
 ///
 /// // A bead on a hoop that turns twice as fast as it takes to leave the lowest point: cos θ = 1/4 too.
@@ -27,8 +27,10 @@ use crate::stability::steady_search::{EnergyCriterion, Known, NearbySteadyMotion
 ///     .lagrangian(|_, x, v| v[0].square() / 2.0 + 2.0 * x[0].sin().square() + x[0].cos())
 ///     .build()?;
 /// let equations = bead.poincare()?;
-/// let mut linearizer = Linearizer::new(&equations, &Leaf::of(&bead), &[])?;
-/// let found = EquilibriumSearch::default().run(&equations, &mut linearizer, (0.0, &[0.3, 0.0]), &[])?;
+/// let leaf = Leaf::of(&bead);
+/// let mut linearizer = Linearizer::new(&equations, &leaf, &[])?;
+/// let conserved = Conserved::of(&equations, None, &leaf, &[]);
+/// let found = EquilibriumSearch::default().run(&mut linearizer, (0.0, &[0.3, 0.0]), &conserved)?;
 /// assert_eq!(found.list.len(), 4); // below, above, and on both sides
 /// assert!((found.list[0].state[0].abs() - 0.25f64.acos()).abs() < 1e-12);
 /// # Ok::<(), pc_analysis::AnalysisError>(())
@@ -61,6 +63,19 @@ pub struct Equilibria {
     pub starts: usize,
     /// The number of starts from which Newton's method converged.
     pub converged: usize,
+    /// The number of starts from which it came to a state at which the rates have no derivatives: a pole of the coordinates
+    /// or of the frame.
+    pub poles: usize,
+}
+
+/// Where Newton's method ends.
+enum End {
+    /// At an equilibrium, with the uncertainty of its components.
+    Equilibrium(Vec<f64>, f64),
+    /// At a state where the conditions of rest hold and the rates have no derivatives.
+    Pole,
+    /// Not at a zero of the conditions.
+    Nowhere,
 }
 
 /// An equilibrium.
@@ -72,26 +87,20 @@ pub struct FoundEquilibrium {
     pub energy: f64,
     /// The first approximation without cyclic coordinates.
     pub linearization: Linearization,
-    /// The results on the stability of the equilibrium.
-    pub motion: NearbySteadyMotion,
+    /// Its stability, judged without cyclic coordinates.
+    pub stability: Stability,
     /// The dimension of the family of the equilibrium, not counting the dimensions due to cyclic coordinates; 0 if it
     /// is isolated, even if the first approximation has a kernel, as at the minimum of x⁴.
     pub family: usize,
     /// The number of members of the family that were found.
     pub members: usize,
-    /// The greatest distance of a member of the family from this equilibrium, as a difference of components
-    /// relative to 1 + |y|.
-    reach: f64,
+    /// Whether it is isolated, although the first approximation has a kernel.
+    is_flat: bool,
 }
 
 /// If the first approximation has a kernel at an isolated equilibrium, Newton's method ends somewhere within about this
 /// distance of it, relative to 1 + |y|, where the rates are below the tolerance of the method.
 const FLAT: f64 = 0.02;
-
-/// The distance from an equilibrium, relative to 1 + |y|, at which the search looks for others of the same
-/// family, and the number of directions in which it looks.
-const BESIDE: f64 = 0.3;
-const DIRECTIONS: usize = 3;
 
 /// The largest number of steps of Newton's method.
 const MOST_STEPS: usize = 60;
@@ -102,6 +111,9 @@ const MOST_STEEPER: f64 = 1e6;
 /// A small rate above this fraction of |∂f/∂y| (1 + |y|) does not indicate a nearby zero: the rate is small
 /// because it decays, like a force at a great distance.
 const FALLING: f64 = 1e-3;
+
+/// Conditions on velocities are dependent up to this singular value, relative to the largest.
+const DEPENDENT: f64 = 1e-6;
 
 /// The largest relative difference of the energies within one family.
 const SAME_ENERGY: f64 = 1e-9;
@@ -124,37 +136,34 @@ impl EquilibriumSearch {
     /// No two coincide modulo the periods of angles; a family of equal energy is represented by one member.
     /// There may be other equilibria.
     ///
-    /// `integrals` are those of the `equations` in independent quasi-velocities, which the energy
-    /// criterion uses; `linearizer` is made from these equations, or from those with multipliers.
+    /// `conserved` are the functions that motions keep, by which stability is judged.
     ///
     /// # Errors
     /// [`AnalysisError::UnknownComponent`], [`AnalysisError::CyclicBox`] or [`AnalysisError::EmptyBox`] for a
     /// wrong box; [`AnalysisError::DependsOnTime`], [`AnalysisError::LeafUnknown`].
-    pub fn run<'g>(
+    pub fn run(
         &self,
-        equations: &Equations<'g>,
         linearizer: &mut Linearizer,
         (t, start): (f64, &[f64]),
-        integrals: &[Integral<'g>],
+        conserved: &Conserved<'_>,
     ) -> Result<Equilibria, AnalysisError> {
         let mut motion = linearizer.motion.clone();
         let domain = self.domain(linearizer, &mut motion, t, start)?;
         linearizer.check_searchable(t, start)?;
-        let steepest = MOST_STEEPER * largest(&linearizer.at(t, start)?.state_matrix).max(1.0);
-        let known = Known::of(equations, integrals);
-        // If the equations are in variables other than the state, only their energy is used.
-        let is_own = equations.system().state().len() == start.len();
-        let seeker = if is_own { Seeker::new(equations, &mut motion, (t, start), &known, &[]) } else { None };
-        let keeps_energy = integrals.iter().any(|integral| integral.is_energy() && integral.is_conserved());
-
-        let cyclic = linearizer.cyclic();
-        let at_rest =
-            SteadyOptions::default().cyclic([] as [&str; 0]).fixed(cyclic.clone()).iterations(MOST_STEPS);
-        let (mut list, mut converged) = (Vec::<FoundEquilibrium>::new(), 0);
+        let steepest = MOST_STEEPER * largest(&first_approximation(&mut motion, t, start)?).max(1.0);
+        let at_rest = SteadyOptions::default().fixed(linearizer.zero_at_rest()).iterations(MOST_STEPS);
+        let (mut list, mut converged, mut poles) = (Vec::<FoundEquilibrium>::new(), 0, 0);
         for number in 0..self.starts {
             let guess =
                 domain.guess(number, start, linearizer.sizes.coordinates, linearizer.sizes.velocities);
-            let Some(state) = linearizer.equilibrium(t, start, &guess, &at_rest, steepest) else { continue };
+            let (state, uncertainty) = match linearizer.equilibrium(t, start, &guess, &at_rest, steepest) {
+                End::Equilibrium(state, uncertainty) => (state, uncertainty),
+                End::Pole => {
+                    poles += 1;
+                    continue;
+                }
+                End::Nowhere => continue,
+            };
             converged += 1;
             let state = domain.normalised(state, start);
             if !domain.contains(&state) {
@@ -163,25 +172,26 @@ impl EquilibriumSearch {
             if list.iter().any(|known| domain.is_same(&known.state, &state)) {
                 continue;
             }
-            let mut found = linearizer.described(&mut motion, t, state, seeker.as_ref(), start)?;
-            if keeps_energy && found.motion.second_variation.is_none() {
-                found.motion.second_variation = found.by_stiffness()?;
+            // At a pole of the coordinates there is nothing to describe.
+            let found = linearizer.described(&mut motion, t, (state, uncertainty), conserved);
+            let Ok(found) = found else {
+                poles += 1;
+                continue;
+            };
+            let is_flat = |known: &FoundEquilibrium| {
+                known.is_flat && found.is_flat && domain.distance(&known.state, &found.state) <= FLAT
+            };
+            if list.iter().any(is_flat) {
+                continue;
             }
-            match list.iter_mut().find(|known| known.is_of_family(&found)) {
-                Some(known) => {
-                    known.members += 1;
-                    known.reach = known.reach.max(domain.distance(&known.state, &found.state));
-                }
-                None => list.push(found),
-            }
-        }
-        for found in list.iter_mut().filter(|found| found.family > 0 && found.reach <= FLAT) {
-            let mut beside = (0..DIRECTIONS).filter_map(|number| {
-                let guess = domain.beside(number, &found.state);
-                linearizer.equilibrium(t, start, &guess, &at_rest, steepest)
+            let is_same = |a: &[f64], b: &[f64]| domain.is_same(a, b);
+            let of_family = list.iter_mut().find(|known| {
+                known.may_share_a_family(&found)
+                    && linearizer.is_in_family(t, (&known.state, &found.state), Family::AtRest, is_same)
             });
-            if !beside.any(|other| domain.distance(&found.state, &other) > FLAT) {
-                (found.family, found.members) = (0, 1);
+            match of_family {
+                Some(known) => known.members += 1,
+                None => list.push(found),
             }
         }
         let place = |a: &FoundEquilibrium, b: &FoundEquilibrium| {
@@ -196,10 +206,11 @@ impl EquilibriumSearch {
         insertion_sorted(&mut list, place);
         Ok(Equilibria {
             list,
-            anywhere: cyclic,
+            anywhere: linearizer.cyclic(),
             bounds: domain.named(linearizer.names()),
             starts: self.starts,
             converged,
+            poles,
         })
     }
 
@@ -321,50 +332,21 @@ impl Domain {
         components.fold(0.0, f64::max)
     }
 
-    /// A point near a state, in one of a few directions that are not parallel to any coordinate plane.
-    fn beside(&self, number: usize, state: &[f64]) -> Vec<f64> {
-        let mut beside = state.to_vec();
-        for (edge, prime) in self.edges.iter().zip(primes()) {
-            let part = ((number + 1) as f64 * f64::from(prime).sqrt()).fract();
-            beside[edge.place] += BESIDE * (1.0 + state[edge.place].abs()) * (2.0 * part - 1.0);
-        }
-        beside
-    }
-
     fn named(&self, names: &[String]) -> Vec<(String, f64, f64)> {
         self.edges.iter().map(|edge| (names[edge.place].clone(), edge.low, edge.high)).collect()
     }
 }
 
-/// Eigenvalues of a form up to this fraction of the largest count as zero.
-const DEFINITE: f64 = 1e-10;
-
 impl FoundEquilibrium {
-    /// The energy criterion in independent coordinates: for a conservative system a minimum of the potential
-    /// energy, K > 0, is stable (J. L. Lagrange, P. G. L. Dirichlet).
-    fn by_stiffness(&self) -> Result<Option<EnergyCriterion>, AnalysisError> {
-        let Ok(second) = &self.linearization.second_order else { return Ok(None) };
-        let k = &second.stiffness;
-        let half = |i: usize, j: usize| (k[(i, j)] + k[(j, i)]) / 2.0;
-        let values = symmetric_eigenvalues(&Matrix::from_fn(k.rows(), k.columns(), half))?.0;
-        let largest = values.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
-        let is_least = values.iter().all(|&value| value > DEFINITE * largest);
-        let verdict = if is_least { Verdict::Stable } else { Verdict::Undecided };
-        Ok(Some(EnergyCriterion { verdict, variables: None }))
-    }
-
-    /// Whether two equilibria may belong to one family, along which the energy and the kind of stability are
-    /// constant.
-    fn is_of_family(&self, other: &FoundEquilibrium) -> bool {
-        self.family > 0
-            && self.family == other.family
-            && (self.energy - other.energy).abs() <= SAME_ENERGY.sqrt() * (1.0 + self.energy.abs())
-            && self.linearization.spectrum.verdict() == other.linearization.spectrum.verdict()
+    /// Whether another equilibrium may be a member of the family of this one, along which the kind of stability is constant.
+    fn may_share_a_family(&self, other: &FoundEquilibrium) -> bool {
+        self.family > 0 && self.stability == other.stability
     }
 }
 
 impl Linearizer {
-    /// The equilibrium near a guess, if there is one at which coordinates are regular.
+    /// The equilibrium near a guess, if there is one at which coordinates are regular and constraints as independent as at
+    /// the start: where they are not, there are no linear equations.
     fn equilibrium(
         &mut self,
         t: f64,
@@ -372,17 +354,39 @@ impl Linearizer {
         guess: &[f64],
         options: &SteadyOptions,
         steepest: f64,
-    ) -> Option<Vec<f64>> {
-        let guess = self.onto_leaf(t, start, guess)?;
-        let found = self.find_on(t, start, &guess, options).ok()?;
+    ) -> End {
+        let Some(guess) = self.onto_leaf(t, start, guess) else { return End::Nowhere };
+        let found = match self.find_on(t, start, &guess, options, &[]) {
+            Ok(found) => found,
+            Err(AnalysisError::NotSmooth { .. }) => return End::Pole,
+            Err(_) => return End::Nowhere,
+        };
         let slopes = &found.first_approximation;
-        let rates = self.motion.rates(t, &found.state).ok()?;
+        let Ok(rates) = self.motion.rates(t, &found.state) else { return End::Pole };
         let reached = |i: usize| {
             let of_state: f64 =
                 (0..slopes.columns()).map(|j| slopes[(i, j)].abs() * (1.0 + found.state[j].abs())).sum();
             rates[i].abs() <= FALLING * of_state
         };
-        (largest(slopes) <= steepest && (0..rates.len()).all(reached)).then_some(found.state)
+        if !(0..rates.len()).all(reached) {
+            return End::Nowhere;
+        }
+        let ranks = (self.rank_of_conditions(t, &found.state), self.rank_of_conditions(t, start));
+        let keeps_rank = matches!(ranks, (Ok(here), Ok(least)) if here >= least);
+        match largest(slopes) <= steepest && keeps_rank {
+            true => End::Equilibrium(found.state, found.uncertainty),
+            false => End::Pole,
+        }
+    }
+
+    /// The number of independent conditions on velocities at a state.
+    fn rank_of_conditions(&mut self, t: f64, state: &[f64]) -> Result<usize, AnalysisError> {
+        let (_, slopes) = self.surface_at(t, state, None)?;
+        let (first, velocities) = (self.sizes.positions + self.sizes.kept, self.quasi_velocities());
+        let entry = |a: usize, s: usize| slopes[(first + a, velocities.start + s)];
+        let by_velocities = Matrix::from_fn(slopes.rows() - first, velocities.len(), entry);
+        let factors = SingularValues::of(&Equilibrated::of(&by_velocities).matrix)?;
+        Ok(factors.rank(DEPENDENT * factors.values.first().copied().unwrap_or(0.0)))
     }
 
     /// A state near the guess on the leaf of the start.
@@ -391,7 +395,12 @@ impl Linearizer {
         if levels.is_empty() {
             return Some(guess.to_vec());
         }
-        let end = newton::solve(guess.to_vec(), MOST_STEPS, |y| self.surface_at(t, y, Some(&levels))).ok()?;
+        let mut end =
+            newton::solve(guess.to_vec(), MOST_STEPS, |y| self.surface_at(t, y, Some(&levels))).ok()?;
+        if self.rests_at_zero {
+            let velocities = self.quasi_velocities();
+            end.point[velocities.clone()].copy_from_slice(&guess[velocities]);
+        }
         end.is_solution(SAME).then_some(end.point)
     }
 
@@ -399,44 +408,22 @@ impl Linearizer {
         &mut self,
         motion: &mut Motion,
         t: f64,
-        state: Vec<f64>,
-        seeker: Option<&Seeker<'_, '_>>,
-        start: &[f64],
+        (state, uncertainty): (Vec<f64>, f64),
+        conserved: &Conserved<'_>,
     ) -> Result<FoundEquilibrium, AnalysisError> {
-        let all: Vec<usize> = (0..state.len()).collect();
-        let free: Vec<usize> = all.iter().copied().filter(|i| !self.cyclic.contains(i)).collect();
-        let family = self.family(t, &state, &all, &free)?;
         let cyclic = self.cyclic.clone();
-        let linearization = self.put_together(t, &state, &cyclic, true)?;
-        let steady = self.find_on(t, start, &state, &SteadyOptions::default().iterations(0))?;
-        let spectrum = &linearization.spectrum;
-        let mut described = match seeker {
-            Some(seeker) => seeker.described(&steady, start, Vec::new())?,
-            None => NearbySteadyMotion {
-                state: Vec::new(),
-                rates: Vec::new(),
-                distance: 0.0,
-                same: Vec::new(),
-                eigenvalues: Vec::new(),
-                tolerance: 0.0,
-                first_approximation: Verdict::Undecided,
-                neutral: None,
-                second_variation: None,
-            },
-        };
-        described.eigenvalues = spectrum.eigenvalues().to_vec();
-        described.tolerance = spectrum.tolerance();
-        described.first_approximation = spectrum.verdict();
         let energy = motion.observable_names().iter().position(|name| name == "energy");
         let observed = motion.observe(t, &state);
+        let near = self.family(t, &state, Family::AtRest)?;
+        let linearization = self.put_together(t, &state, &cyclic, Some(uncertainty))?;
         Ok(FoundEquilibrium {
             energy: energy.map_or(f64::NAN, |place| observed[place]),
-            state,
+            stability: self.stability(&linearization, conserved)?,
             linearization,
-            motion: described,
-            family,
+            family: near.family,
+            is_flat: near.neutral > near.family,
             members: 1,
-            reach: 0.0,
+            state,
         })
     }
 }

@@ -9,7 +9,7 @@ use crate::linear::modes::{Mode, modes};
 use crate::linear::second_order::{NoSecondOrder, Parts, Reduced, SecondOrder};
 use crate::numeric::dense::{norm, product};
 use crate::stability::spectrum::Spectrum;
-use crate::stability::steady_motion::{SteadyOptions, first_approximation};
+use crate::stability::steady_motion::{SteadyOptions, errors, first_approximation};
 
 /// δẏ = A δy + B δu, δh = C δy + D δu for small deviations of the reduced state: independent coordinates of
 /// the states that satisfy the constraints, independent quasi-velocities, and first-order states. Deviations
@@ -38,8 +38,10 @@ pub struct Linearization {
     pub inputs: Vec<String>,
     /// B.
     pub input_matrix: Matrix<f64>,
-    /// The names of the outputs that depend on no coordinate that is left out.
+    /// The names of the outputs that have derivatives at the state and depend on no coordinate that is left out.
     pub outputs: Vec<String>,
+    /// Their values at the state.
+    pub output_values: Vec<f64>,
     /// C.
     pub output_matrix: Matrix<f64>,
     /// D.
@@ -52,6 +54,8 @@ pub struct Linearization {
     pub modes: Vec<Mode>,
     /// M q̈ + G q̇ + K q = F u.
     pub second_order: Result<SecondOrder, NoSecondOrder>,
+    /// The uncertainty of a steady state, relative to 1 + |y|.
+    pub(super) uncertainty: f64,
 }
 
 /// The cyclic coordinates that are components of the reduced state.
@@ -100,7 +104,7 @@ impl Linearizer {
             CyclicCoordinates::LeftOut => self.cyclic.clone(),
             CyclicCoordinates::KeptAtRest => self.moving(t, &found.state)?,
         };
-        let mut result = self.put_together(t, &found.state, &left_out, true)?;
+        let mut result = self.put_together(t, &found.state, &left_out, Some(found.uncertainty))?;
         let steps = found.state.iter().zip(guess).map(|(y, guess)| y - guess);
         result.distance = norm(&steps.collect::<Vec<_>>());
         Ok(result)
@@ -117,10 +121,11 @@ impl Linearizer {
         let rates = self.motion.rates(t, state)?;
         let jacobian = first_approximation(&mut self.motion, t, state)?;
         let enough = AT_REST * norm(&jacobian.entries()) * (1.0 + norm(state));
-        let kept = (0..state.len()).filter(|i| !self.cyclic.contains(i));
+        let varying = self.varying();
+        let kept = (0..state.len()).filter(|i| !self.cyclic.contains(i) && !varying.contains(i));
         let residual = norm(&kept.map(|i| rates[i]).collect::<Vec<_>>());
         let is_steady = !self.depends_on_time() && residual <= enough;
-        self.put_together(t, state, &[], is_steady)
+        self.put_together(t, state, &[], is_steady.then_some(0.0))
     }
 
     /// The number of components that the reduced state has near a state, without the cyclic coordinates or with all of
@@ -159,6 +164,12 @@ impl Linearizer {
         }
     }
 
+    /// The names of the cyclic coordinates whose rates vary in a steady motion, since cyclic coordinates act on them: the place
+    /// of a wheel that rolls in a circle.
+    pub fn varying_rates(&self) -> Vec<String> {
+        self.acted_on(&self.cyclic).into_iter().map(|i| self.names()[i].clone()).collect()
+    }
+
     /// The cyclic coordinates whose rates depend on these components.
     fn acted_on(&self, by: &[usize]) -> Vec<usize> {
         let pattern = self.motion.sparsity();
@@ -166,36 +177,48 @@ impl Linearizer {
         self.cyclic.iter().copied().filter(|&i| acts_on(i)).collect()
     }
 
+    /// The linearization at a state without the coordinates `left_out`; for a steady state, with the relative `uncertainty` of
+    /// its components.
     pub(super) fn put_together(
         &mut self,
         t: f64,
         state: &[f64],
         left_out: &[usize],
-        is_steady: bool,
+        uncertainty: Option<f64>,
     ) -> Result<Linearization, AnalysisError> {
         let evaluated = self.evaluated(t, state)?;
         let rates = self.motion.rates(t, state)?;
+        let noise = errors(&mut self.motion, (t, state), &evaluated.jacobian, uncertainty.unwrap_or(0.0));
         let (n, all) = (self.sizes.coordinates, state.len());
         let coordinates: Vec<usize> = (0..n).filter(|i| !left_out.contains(i)).collect();
         let reduced = evaluated.reduced(&coordinates, n, all)?;
-        let Evaluated { jacobian, by_inputs, outputs, outputs_by_inputs, .. } = &evaluated;
+        let Evaluated { jacobian, by_inputs, output_values, outputs, outputs_by_inputs, .. } = &evaluated;
         let Reduced { kept, extension, .. } = &reduced;
         let r = kept.len();
         let moved = product(jacobian, extension);
         let state_matrix = Matrix::from_fn(r, r, |i, j| moved[(kept[i], j)]);
         let input_matrix = Matrix::from_fn(r, by_inputs.columns(), |i, j| by_inputs[(kept[i], j)]);
 
-        let is_own = |&o: &usize| left_out.iter().all(|&x| outputs[(o, x)] == 0.0);
+        let is_smooth = |o: usize| {
+            let slopes =
+                outputs.row(o).iter().chain(outputs_by_inputs.row(o).iter()).all(|slope| slope.is_finite());
+            slopes && output_values[o].is_finite()
+        };
+        let is_own = |&o: &usize| is_smooth(o) && left_out.iter().all(|&x| outputs[(o, x)] == 0.0);
         let (own, others): (Vec<usize>, Vec<usize>) = (0..outputs.rows()).partition(is_own);
         let seen = product(outputs, extension);
         let name = |o: &usize| self.outputs()[*o].clone();
 
-        let not_cyclic = |i: &usize| !self.cyclic.contains(i);
-        let resting: Vec<f64> = (0..all).filter(not_cyclic).map(|i| rates[i]).collect();
+        let varying = self.varying();
+        let is_constant = |i: &usize| !self.cyclic.contains(i) && !varying.contains(i);
+        let resting: Vec<f64> = (0..all).filter(is_constant).map(|i| rates[i]).collect();
         let residual = norm(&resting);
         let scale = norm(&jacobian.entries()) * (1.0 + norm(state));
-        let uncertainty = if is_steady && scale > 0.0 { residual / scale } else { 0.0 };
-        let spectrum = Spectrum::of(&state_matrix, uncertainty)?;
+        let is_steady = uncertainty.is_some();
+        // Errors of rows are carried by the directions.
+        let moved_noise = product(&noise, &extension.map(f64::abs));
+        let noise = Matrix::from_fn(r, r, |i, j| moved_noise[(kept[i], j)]);
+        let spectrum = Spectrum::with_noise(&state_matrix, &noise)?;
         let named = |i: &usize| (self.names()[*i].clone(), rates[*i]);
         Ok(Linearization {
             t,
@@ -211,6 +234,7 @@ impl Linearizer {
             inputs: self.inputs(),
             input_matrix,
             outputs: own.iter().map(name).collect(),
+            output_values: own.iter().map(|&o| output_values[o]).collect(),
             output_matrix: Matrix::from_fn(own.len(), r, |i, j| seen[(own[i], j)]),
             feedthrough: Matrix::from_fn(own.len(), outputs_by_inputs.columns(), |i, j| {
                 outputs_by_inputs[(own[i], j)]
@@ -218,6 +242,7 @@ impl Linearizer {
             other_outputs: others.iter().map(name).collect(),
             state_matrix,
             spectrum,
+            uncertainty: uncertainty.unwrap_or(0.0),
         })
     }
 

@@ -3,17 +3,17 @@
 use std::ops::Range;
 
 use pc_expr::{Backend, Evaluator, Inputs, Program};
-use pc_mech::{
-    CompileOptions, Equations, Expr, Matrix, Motion, Multipliers, SingularValues, System, VectorField,
-};
+use pc_mech::{CompileOptions, Equations, Expr, Graph, Matrix, Motion, Multipliers, System, VectorField};
 
 use crate::error::{AnalysisError, check_variables};
 use crate::integrals::search::rank_of_gradients;
 use crate::linear::leaf::{Directions, Velocities};
 use crate::linear::reactions::Reactions;
+use crate::linear::statics::Statics;
 use crate::numeric::dense::{norm, product};
-use crate::numeric::program::values;
-use crate::stability::steady_motion::{SteadyMotion, SteadyOptions, cyclic_coordinates, first_approximation};
+use crate::numeric::equilibrated::{aside, larger};
+use crate::numeric::program::{values, values_or_not};
+use crate::stability::steady_motion::{cyclic_coordinates, first_approximation};
 use crate::stability::steady_search::{is_autonomous, names_time};
 
 /// The states that a motion can reach from its start.
@@ -72,6 +72,9 @@ impl<'g> Leaf<'g> {
 pub struct Linearizer {
     pub(super) motion: Motion,
     pub(super) cyclic: Vec<usize>,
+    /// The quasi-velocities that nonholonomic constraints make depend on the others, by their indices among the
+    /// quasi-velocities: where the others are constant, these need not be.
+    pub(super) dependent: Vec<usize>,
     /// Whether rates depend on time, for the present values of the parameters and, in `names_time`, for any
     /// values.
     depends_on_time: bool,
@@ -81,14 +84,21 @@ pub struct Linearizer {
     outputs: Vec<String>,
     /// The position constraints, the kept functions and the conditions on velocities, then their slopes.
     surface: Evaluator,
-    /// b, M, and for each output its derivatives with respect to the state, the accelerations, the reactions
-    /// and the inputs.
+    /// b
+    frame: Evaluator,
+    /// b and M.
     parts: Evaluator,
+    /// The outputs, and their derivatives by the state, the accelerations, the reactions and the inputs.
+    observed: Evaluator,
+    /// The conditions of steady motion.
+    pub(super) statics: Statics,
     /// The reactions that occur in the outputs.
     reactions: Option<Reactions>,
     pub(super) sizes: Sizes,
+    /// Whether a state is at rest if its quasi-velocities are zero: b_0 = 0.
+    pub(super) rests_at_zero: bool,
     /// Whether all functions that are constant along the motions in the frame are known.
-    is_leaf_known: bool,
+    pub(super) is_leaf_known: bool,
 }
 
 /// The numbers of components of all parts.
@@ -100,8 +110,8 @@ pub(super) struct Sizes {
     whole: usize,
     /// The number of rows of the mass matrix; 0 for a large tree.
     mass: usize,
-    positions: usize,
-    kept: usize,
+    pub(super) positions: usize,
+    pub(super) kept: usize,
     /// The number of conditions on the velocities.
     conditions: usize,
 }
@@ -115,10 +125,15 @@ pub(super) struct Evaluated {
     pub(super) mass: Option<Matrix<f64>>,
     pub(super) directions: Directions,
     pub(super) velocities: Velocities,
+    /// h
+    pub(super) output_values: Vec<f64>,
     /// ∂h/∂y and ∂h/∂u with the accelerations substituted.
     pub(super) outputs: Matrix<f64>,
     pub(super) outputs_by_inputs: Matrix<f64>,
 }
+
+/// How far from a state typical sizes of slopes are taken.
+const ASIDE: f64 = 0.05;
 
 impl Linearizer {
     /// Linearizes equations in independent quasi-velocities; `inputs` names the parameters that are inputs.
@@ -137,6 +152,9 @@ impl Linearizer {
 
     /// Linearizes equations with multipliers, which are regular wherever the constraints are. No choice of
     /// independent velocities is regular everywhere: ẏ, for example, is not at the lowest point of a circle.
+    ///
+    /// Under nonholonomic constraints, the [dependent](Multipliers::dependent) velocities of a steady motion may vary, as
+    /// those of a wheel along fixed axes do in a turn.
     ///
     /// # Errors
     /// As [`new`](Linearizer::new).
@@ -166,9 +184,15 @@ impl Linearizer {
             None => Err(AnalysisError::UnknownComponent { name: input.to_owned(), known: names.clone() }),
         };
         let inputs = inputs.iter().map(place).collect::<Result<Vec<_>, _>>()?;
-        let pattern = motion.sparsity();
         let x = system.frame().coordinates();
-        let cyclic = pattern.map(|pattern| cyclic_coordinates(pattern, x.len())).unwrap_or_default();
+        let relations = [&leaf.positions[..], &leaf.kept].concat();
+        let candidates: Vec<usize> =
+            (0..x.len()).filter(|&i| !conditions.iter().any(|g| g.depends_on(x[i]))).collect();
+        let cyclic = motion.sparsity().map(|pattern| {
+            let cyclic = cyclic_coordinates(pattern, &candidates);
+            undetermined(graph, &relations, x, &cyclic)
+        });
+        let cyclic = cyclic.unwrap_or_default();
 
         let state = system.state();
         let functions: Vec<Expr<'g>> =
@@ -200,9 +224,9 @@ impl Linearizer {
             Inputs { state: [&state, &accelerations, reactions].concat(), ..of_state.clone() };
         let known = [&with_unknowns.state[..], &parameters, &[system.frame().time()]].concat();
         check_variables("an output", graph, &outputs, &known)?;
-        let parts = [
-            b.to_rows().concat(),
-            mass,
+        let parts = [b.to_rows().concat(), mass];
+        let observed = [
+            outputs,
             of_outputs(&state),
             of_outputs(&accelerations),
             of_outputs(reactions),
@@ -223,7 +247,10 @@ impl Linearizer {
         let is_timed = conditions.iter().any(|g| g.depends_on(system.frame().time()));
         Ok(Linearizer {
             surface: evaluator(&of_state, &surface)?,
+            frame: evaluator(&of_state, &b.to_rows().concat())?,
             parts: evaluator(&with_unknowns, &parts.concat())?,
+            observed: evaluator(&with_unknowns, &observed.concat())?,
+            statics: Statics::new(equations, multipliers, &cyclic, &of_state, &symbols)?,
             reactions: reacting
                 .map(|(all, list)| Reactions::new(all, list, &of_state, &symbols))
                 .transpose()?,
@@ -232,6 +259,8 @@ impl Linearizer {
             outputs: system.outputs().iter().map(|(name, _)| name.clone()).collect(),
             is_leaf_known: leaf.codimension() == 0
                 || rank_of_gradients(graph, &leaf.kept, x) >= leaf.codimension(),
+            rests_at_zero: system.frame().b0().iter().all(|b| b.is_zero()),
+            dependent: multipliers.map(following).unwrap_or_default(),
             sizes,
             motion,
             cyclic,
@@ -249,9 +278,21 @@ impl Linearizer {
         self.sizes.coordinates..self.sizes.coordinates + self.sizes.velocities
     }
 
-    /// The names of the cyclic coordinates, on which no rates depend except those of cyclic ones.
+    /// The names of the cyclic coordinates, on which no rates depend except those of cyclic ones, and which no relation
+    /// ties to the others.
     pub fn cyclic(&self) -> Vec<String> {
         self.cyclic.iter().map(|&i| self.motion.names()[i].clone()).collect()
+    }
+
+    /// The names of the quasi-velocities, if they are zero at rest.
+    pub(super) fn zero_at_rest(&self) -> Vec<String> {
+        let velocities = if self.rests_at_zero { self.quasi_velocities() } else { 0..0 };
+        self.names()[velocities].to_vec()
+    }
+
+    /// The components whose rates need not vanish in a steady motion, apart from the cyclic coordinates.
+    pub(super) fn varying(&self) -> Vec<usize> {
+        self.dependent.iter().map(|s| self.sizes.coordinates + s).collect()
     }
 
     /// The names of the inputs.
@@ -296,54 +337,6 @@ impl Linearizer {
         }
     }
 
-    /// The equilibrium or steady motion near a state, on the leaf of that state.
-    ///
-    /// # Errors
-    /// [`AnalysisError::DependsOnTime`]; [`AnalysisError::LeafUnknown`] if Newton's method would need
-    /// functions of the coordinates that motions keep constant but that are unknown, and the state itself is
-    /// not steady; otherwise as [`SteadyMotion::near`].
-    pub(super) fn find(
-        &mut self,
-        t: f64,
-        guess: &[f64],
-        options: &SteadyOptions,
-    ) -> Result<SteadyMotion, AnalysisError> {
-        if self.depends_on_time {
-            return Err(AnalysisError::DependsOnTime);
-        }
-        // Unless all functions of the leaf are known, coordinates are not moved.
-        let options = match self.is_leaf_known {
-            true => options.clone(),
-            false => options.clone().fixed(self.names()[..self.sizes.coordinates].to_vec()),
-        };
-        let residual = match self.find_on(t, guess, guess, &options) {
-            Err(AnalysisError::NoSteadyMotion { residual, .. }) if !self.is_leaf_known => residual,
-            Err(failure @ AnalysisError::NoSteadyMotion { .. }) => {
-                // From a fast start the same place at rest may be closer.
-                let mut at_rest = guess.to_vec();
-                at_rest[self.quasi_velocities()].fill(0.0);
-                let is_free = !self.names()[self.quasi_velocities()].iter().any(|name| options.holds(name));
-                let again = is_free.then(|| self.find_on(t, guess, &at_rest, &options).ok()).flatten();
-                return again.ok_or(failure);
-            }
-            found => return found,
-        };
-        Err(AnalysisError::LeafUnknown { residual })
-    }
-
-    /// The equilibrium or steady motion near a guess, on the leaf of a state.
-    pub(super) fn find_on(
-        &mut self,
-        t: f64,
-        leaf: &[f64],
-        guess: &[f64],
-        options: &SteadyOptions,
-    ) -> Result<SteadyMotion, AnalysisError> {
-        let levels = self.levels(t, leaf)?;
-        let mut motion = self.motion.clone();
-        SteadyMotion::on_surface(&mut motion, t, guess, options, |y| self.surface_at(t, y, Some(&levels)))
-    }
-
     /// The values of the position constraints, followed by those of the kept functions and the conditions on
     /// velocities.
     pub(super) fn levels(&mut self, t: f64, state: &[f64]) -> Result<Vec<f64>, AnalysisError> {
@@ -369,6 +362,13 @@ impl Linearizer {
         Ok((values, Matrix::from_fn(rows, y.len(), slope)))
     }
 
+    /// The frame b at a state.
+    fn frame_at(&mut self, t: f64, y: &[f64]) -> Result<Matrix<f64>, AnalysisError> {
+        let (n, k) = (self.sizes.coordinates, self.sizes.whole);
+        let numbers = values(&mut self.frame, t, y, self.motion.parameters())?;
+        Ok(Matrix::from_fn(n, k, |i, j| numbers[i * k + j]))
+    }
+
     /// All derivatives at a state.
     pub(super) fn evaluated(&mut self, t: f64, y: &[f64]) -> Result<Evaluated, AnalysisError> {
         let (n, l, size) = (self.sizes.coordinates, self.sizes.velocities, y.len());
@@ -382,8 +382,21 @@ impl Linearizer {
         let by_inputs = Matrix::from_fn(size, places.len(), |i, j| by_parameters[i + places[j] * size]);
         let (_, slopes) = self.surface_at(t, y, None)?;
         let first = self.sizes.positions + self.sizes.kept;
-        let conditions = Matrix::from_fn(self.sizes.conditions, n + l, |a, j| slopes[(first + a, j)]);
-        let slopes = Matrix::from_fn(self.sizes.positions, n, |a, j| slopes[(a, j)]);
+        let of_conditions =
+            |slopes: &Matrix<f64>, rows: usize| Matrix::from_fn(rows, n + l, |a, j| slopes[(first + a, j)]);
+        let of_positions =
+            |slopes: &Matrix<f64>, rows: usize| Matrix::from_fn(rows, n, |a, j| slopes[(a, j)]);
+        let there = aside(y, ASIDE);
+        let typical = self
+            .surface_at(t, &there, None)
+            .map_or_else(|_| slopes.clone(), |(_, there)| larger(&slopes, &there));
+        let (conditions, positions) = (self.sizes.conditions, self.sizes.positions);
+        let velocities = Velocities::new(
+            (&of_conditions(&slopes, conditions), &of_conditions(&typical, conditions)),
+            n,
+            l,
+            &self.dependent,
+        )?;
 
         let parameters = self.motion.parameters().to_vec();
         let rows = |of: &Matrix<f64>| Matrix::from_fn(l, of.columns(), |s, j| of[(n + s, j)]);
@@ -393,7 +406,12 @@ impl Linearizer {
         let reacting = reacting.transpose()?;
         let reactions = reacting.as_ref().map_or(&[][..], |reacting| &reacting.values);
         let state = [y, &rates[n..n + l], reactions].concat();
-        let numbers = values(&mut self.parts, t, &state, &parameters)?;
+        // An output such as a speed has no derivative at rest, where all else has.
+        let numbers = [
+            values(&mut self.parts, t, &state, &parameters)?,
+            values_or_not(&mut self.observed, t, &state, &parameters),
+        ]
+        .concat();
         let mut rest = numbers.as_slice();
         let mut take = |rows: usize, columns: usize| {
             let (own, others) = rest.split_at(rows * columns);
@@ -402,7 +420,9 @@ impl Linearizer {
         };
         let outputs = self.outputs.len();
         let b = take(n, self.sizes.whole);
+        let typical_b = larger(&b, &self.frame_at(t, &there).unwrap_or_else(|_| b.clone()));
         let mass = take(self.sizes.mass, self.sizes.mass);
+        let output_values = take(1, outputs).row(0).into_owned();
         let (by_state, by_accelerations) = (take(outputs, size), take(outputs, l));
         let (by_reactions, by_own_inputs) = (take(outputs, reactions.len()), take(outputs, places.len()));
         let through = |own: Matrix<f64>, accelerated: &Matrix<f64>, reacted: Option<&Matrix<f64>>| {
@@ -413,6 +433,7 @@ impl Linearizer {
         let (_, accelerated, accelerated_by_inputs) = accelerating;
         let reacted = reacting.as_ref();
         Ok(Evaluated {
+            output_values,
             outputs: through(by_state, accelerated, reacted.map(|all| &all.by_state)),
             outputs_by_inputs: through(
                 by_own_inputs,
@@ -420,34 +441,36 @@ impl Linearizer {
                 reacted.map(|all| &all.by_inputs),
             ),
             mass: (self.sizes.mass == l).then_some(mass),
-            directions: Directions::new(&b, &slopes)?,
-            velocities: Velocities::new(&conditions, n, l)?,
+            directions: Directions::new(
+                (&b, &typical_b),
+                (&of_positions(&slopes, positions), &of_positions(&typical, positions)),
+            )?,
+            velocities,
             jacobian,
             by_inputs,
         })
     }
-
-    /// The dimension of the family of equilibria or steady motions through a state on its leaf, to first
-    /// order: the dimension of the kernel of the slopes of the rates `kept` with respect to the components
-    /// `free`.
-    pub(super) fn family(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        kept: &[usize],
-        free: &[usize],
-    ) -> Result<usize, AnalysisError> {
-        let jacobian = first_approximation(&mut self.motion, t, y)?;
-        let (_, normals) = self.surface_at(t, y, None)?;
-        let row = |i: usize, j: usize| match i.checked_sub(kept.len()) {
-            None => jacobian[(kept[i], free[j])],
-            Some(a) => normals[(a, free[j])],
-        };
-        let slopes = Matrix::from_fn(kept.len() + normals.rows(), free.len(), row);
-        let values = SingularValues::of(&slopes)?;
-        Ok(free.len() - values.rank(FAMILY * values.values.first().copied().unwrap_or(0.0)))
-    }
 }
 
-/// Singular values below this fraction of the largest count as zero.
-const FAMILY: f64 = 1e-8;
+/// Those of the coordinates x_i that can move while all others are held and the relations f(x) = 0 hold: x_i is
+/// determined by the others if column i of ∂f/∂x is independent of the other columns.
+fn undetermined<'g>(
+    graph: &'g Graph,
+    relations: &[Expr<'g>],
+    x: &[Expr<'g>],
+    coordinates: &[usize],
+) -> Vec<usize> {
+    let rank = |columns: &[usize]| {
+        let moving: Vec<Expr<'g>> = columns.iter().map(|&i| x[i]).collect();
+        rank_of_gradients(graph, relations, &moving)
+    };
+    let all = rank(coordinates);
+    let without = |&i: &usize| coordinates.iter().copied().filter(|&j| j != i).collect::<Vec<_>>();
+    coordinates.iter().copied().filter(|i| all == 0 || rank(&without(i)) == all).collect()
+}
+
+/// The velocities that follow from the others under nonholonomic constraints.
+fn following(multipliers: &Multipliers<'_>) -> Vec<usize> {
+    let is_holonomic = (0..multipliers.constraints().len()).all(|a| multipliers.is_holonomic(a));
+    if is_holonomic { Vec::new() } else { multipliers.dependent().to_vec() }
+}

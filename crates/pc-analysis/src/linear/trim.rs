@@ -1,19 +1,20 @@
 //! Rest or steady motion obtained by choosing some inputs and components of the state.
 
-use pc_mech::{Matrix, SingularValues, VectorField};
+use pc_mech::{Matrix, VectorField};
 
 use crate::error::{AnalysisError, shape};
 use crate::linear::linearizer::Linearizer;
+use crate::linear::search::Balanced;
+use crate::linear::statics::Unknowns;
 use crate::numeric::dense::norm;
-use crate::numeric::newton;
+use crate::numeric::newton::Iterate;
 use crate::stability::steady_motion::{check_smooth, first_approximation};
 
 /// The largest number of steps of Newton's method, and the relative residual that counts as zero.
 const ITERATIONS: usize = 100;
 const ZERO: f64 = 1e-12;
-/// Singular values below this fraction of the largest count as zero, once the columns of the slopes are scaled to the
-/// same length; a quantity takes part in the changes along which the rates vanish if the square of its component in the
-/// kernel exceeds this value.
+/// A quantity takes part in the changes along which the rates vanish if its component in a direction of the kernel exceeds this
+/// fraction of it.
 const SINGULAR: f64 = 1e-8;
 
 /// A state and inputs at which the rates of all but the cyclic coordinates vanish.
@@ -65,35 +66,28 @@ impl Linearizer {
             return Err(AnalysisError::DependsOnTime);
         }
         let unknowns = self.unknowns(free)?;
-        if unknowns
-            .iter()
-            .any(|unknown| matches!(unknown, Unknown::Component(i) if *i < self.sizes.coordinates))
-        {
+        if unknowns.components.iter().any(|&i| i < self.sizes.coordinates) {
             self.check_searchable(t, guess)?;
         }
         let levels = self.levels(t, guess)?;
-        let kept: Vec<usize> = (0..guess.len()).filter(|i| !self.cyclic.contains(i)).collect();
-        let mut state = guess.to_vec();
-        let start = unknowns.iter().map(|unknown| match *unknown {
-            Unknown::Component(i) => guess[i],
-            Unknown::Input(place) => self.motion.parameters()[place],
-        });
-        let end = newton::solve(start.collect(), ITERATIONS, |z| {
-            self.give(&unknowns, z, &mut state);
-            self.balance(t, &state, (&kept, &unknowns), &levels)
-        })?;
-        self.give(&unknowns, &end.point, &mut state);
-        let residual = norm(&end.values[..kept.len()]);
+        let Balanced { end, point } = self.balanced(t, guess, &levels, (ITERATIONS, false), &unknowns)?;
+        let state = point.state;
+        let varying: Vec<usize> = unknowns.varying.iter().map(|s| self.sizes.coordinates + s).collect();
         let named =
             |linearizer: &Linearizer| linearizer.names().iter().cloned().zip(state.iter().copied()).collect();
+        let residual = self.residual(t, &state, &unknowns.moving, &varying);
         if !end.is_solution(ZERO) {
             let (state, iterations) = (named(self), end.iterations);
             return Err(AnalysisError::NoSteadyMotion { residual, iterations, t, state });
         }
-        let undetermined = undetermined(&end.slopes, free)?;
+        let components = unknowns.components.iter().map(|&i| self.names()[i].clone());
+        let names: Vec<String> =
+            components.chain(unknowns.inputs.iter().map(|&j| self.inputs[j].0.clone())).collect();
+        let undetermined = undetermined(&end, &names)?;
         if !undetermined.is_empty() {
             return Err(AnalysisError::Undetermined { names: undetermined });
         }
+        let kept: Vec<usize> = (0..state.len()).filter(|i| !self.cyclic.contains(i)).collect();
         let slopes = first_approximation(&mut self.motion, t, &state)?;
         let slopes = Matrix::from_fn(kept.len(), kept.len(), |i, j| slopes[(kept[i], kept[j])]);
         check_smooth(&mut self.motion, t, &state, &kept, &slopes)?;
@@ -106,74 +100,31 @@ impl Linearizer {
         })
     }
 
-    fn unknowns(&self, free: &[String]) -> Result<Vec<Unknown>, AnalysisError> {
-        let find = |name: &String| {
-            let component = self.names().iter().position(|known| known == name).map(Unknown::Component);
-            let input = || {
-                self.inputs.iter().find(|(known, _)| known == name).map(|&(_, place)| Unknown::Input(place))
-            };
-            component.or_else(input).ok_or_else(|| AnalysisError::UnknownComponent {
-                name: name.clone(),
-                known: [self.names(), &Linearizer::inputs(self)].concat(),
-            })
-        };
-        free.iter().map(find).collect()
-    }
-
-    /// Writes the values of the unknowns into the state and the parameters.
-    fn give(&mut self, unknowns: &[Unknown], values: &[f64], state: &mut [f64]) {
-        for (unknown, &value) in unknowns.iter().zip(values) {
-            match *unknown {
-                Unknown::Component(i) => state[i] = value,
-                Unknown::Input(place) => self.motion.parameters_mut()[place] = value,
+    /// The components and inputs with these names. The velocities that constraints make depend on others may vary.
+    fn unknowns(&self, free: &[String]) -> Result<Unknowns, AnalysisError> {
+        let (mut components, mut inputs) = (Vec::new(), Vec::new());
+        for name in free {
+            let input = self.inputs.iter().position(|(known, _)| known == name);
+            match (self.names().iter().position(|known| known == name), input) {
+                (Some(i), _) => components.push(i),
+                (None, Some(j)) => inputs.push(j),
+                (None, None) => {
+                    let known = [self.names(), &Linearizer::inputs(self)].concat();
+                    return Err(AnalysisError::UnknownComponent { name: name.clone(), known });
+                }
             }
         }
-    }
-
-    /// The rates that should vanish and the distances from the surface, with their slopes with respect to the
-    /// unknowns.
-    fn balance(
-        &mut self,
-        t: f64,
-        state: &[f64],
-        (kept, unknowns): (&[usize], &[Unknown]),
-        levels: &[f64],
-    ) -> Result<(Vec<f64>, Matrix<f64>), AnalysisError> {
-        let rates = self.motion.rates(t, state)?;
-        let by_state = first_approximation(&mut self.motion, t, state)?;
-        let size = state.len();
-        let mut by_parameters = vec![0.0; size * self.motion.parameters().len()];
-        if !self.inputs.is_empty() {
-            self.motion.parameter_jacobian(t, state, &mut by_parameters)?;
-        }
-        let (distances, normals) = self.surface_at(t, state, Some(levels))?;
-        let rows = kept.len() + distances.len();
-        let values = kept.iter().map(|&i| rates[i]).chain(distances).collect();
-        let slope = |i: usize, j: usize| match (i.checked_sub(kept.len()), unknowns[j]) {
-            (None, Unknown::Component(component)) => by_state[(kept[i], component)],
-            (None, Unknown::Input(place)) => by_parameters[kept[i] + place * size],
-            (Some(a), Unknown::Component(component)) => normals[(a, component)],
-            (Some(_), Unknown::Input(_)) => 0.0, // constraints contain no inputs
-        };
-        Ok((values, Matrix::from_fn(rows, unknowns.len(), slope)))
+        let (moving, varying) = (self.cyclic.clone(), self.dependent.clone());
+        Ok(Unknowns { components, inputs, moving, varying })
     }
 }
 
-/// An unknown: a component of the state, or an input, given by its index among the parameters.
-#[derive(Clone, Copy, Debug)]
-enum Unknown {
-    Component(usize),
-    Input(usize),
-}
-
-/// The names of the quantities that may change while the rates still vanish; `names` has one name for each
-/// column of `slopes`.
-fn undetermined(slopes: &Matrix<f64>, names: &[String]) -> Result<Vec<String>, AnalysisError> {
-    let (rows, columns) = (slopes.rows(), slopes.columns());
-    let size = |j: usize| norm(&(0..rows).map(|i| slopes[(i, j)]).collect::<Vec<_>>());
-    let scales: Vec<f64> = (0..columns).map(size).map(|size| if size > 0.0 { size } else { 1.0 }).collect();
-    let factors = SingularValues::of(&Matrix::from_fn(rows, columns, |i, j| slopes[(i, j)] / scales[j]))?;
-    let rank = factors.rank(SINGULAR * factors.values.first().copied().unwrap_or(0.0));
-    let along = |j: &usize| (rank..columns).map(|l| factors.right[(*j, l)].powi(2)).sum::<f64>() > SINGULAR;
-    Ok((0..columns).filter(along).map(|j| names[j].clone()).collect())
+/// The names of the quantities that may change while the rates still vanish; the first unknowns are the quantities with these
+/// `names`.
+fn undetermined(end: &Iterate, names: &[String]) -> Result<Vec<String>, AnalysisError> {
+    let kernel = end.kernel()?;
+    let sizes: Vec<f64> =
+        (0..kernel.columns()).map(|l| norm(&kernel.column(l).collect::<Vec<_>>())).collect();
+    let along = |j: &usize| (0..kernel.columns()).any(|l| kernel[(*j, l)].abs() > SINGULAR * sizes[l]);
+    Ok((0..names.len()).filter(along).map(|j| names[j].clone()).collect())
 }

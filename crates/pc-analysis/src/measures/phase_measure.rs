@@ -3,6 +3,7 @@
 use pc_mech::{Expr, Graph, Matrix, System};
 
 use crate::error::AnalysisError;
+use crate::measures::darboux::power_of_polynomial;
 use crate::measures::invariant_measure::{
     InvariantMeasure, candidates, determinants_of_blocks, invariant_measure, simple_factors,
 };
@@ -64,8 +65,8 @@ impl<'g> MeasureSearch<'g> {
     /// declared integrals that depend on the position alone; `None` means that the system is not holonomic.
     ///
     /// Otherwise a density with these factors and those of [`invariant_measure`] is sought, then one that has
-    /// momenta among its factors as well; this search is omitted for more than six quasi-velocities and for
-    /// long equations.
+    /// momenta among its factors as well, then a power of a polynomial of the second degree in the coordinates; this search is
+    /// omitted for more than six quasi-velocities and for long equations.
     ///
     /// `at` gives values of time, state and parameters at which N is positive.
     ///
@@ -264,7 +265,7 @@ fn product_of_blocks<'g>(graph: &'g Graph, matrix: &Matrix<Expr<'g>>) -> Option<
     (!product.is_zero()).then_some(product)
 }
 
-/// The measure found by a search for its factors, preferably one without momenta among them.
+/// The measure found by a search for its factors, preferably one without momenta among them, or else as a power of a polynomial.
 fn found<'g>(system: &System<'g>) -> Result<Option<InvariantMeasure<'g>>, AnalysisError> {
     let known = |error| match error {
         AnalysisError::Mech(error) if error.is_not_quadratic() => Ok(None),
@@ -275,7 +276,10 @@ fn found<'g>(system: &System<'g>) -> Result<Option<InvariantMeasure<'g>>, Analys
         Some(measure) => Ok(Some(measure)),
         None => {
             let momenta = system.momentum_symbols();
-            invariant_measure(system, &[factors, momenta].concat()).or_else(known)
+            match invariant_measure(system, &[factors, momenta].concat()).or_else(known)? {
+                Some(measure) => Ok(Some(measure)),
+                None => power_of_polynomial(system).or_else(known),
+            }
         }
     }
 }

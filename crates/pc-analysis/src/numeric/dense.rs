@@ -4,27 +4,13 @@ use faer::linalg::solvers::Solve;
 use faer::{Mat, Side};
 use pc_mech::{Matrix, MatrixError, MechError};
 
-/// The eigenvalues of a square matrix, as pairs of real and imaginary parts.
-///
-/// # Errors
-/// [`MatrixError::NoEigenvalues`] for a matrix with an entry that is not finite.
-pub(crate) fn eigenvalues(matrix: &Matrix<f64>) -> Result<Vec<(f64, f64)>, MechError> {
-    let size = matrix.rows();
-    if size == 0 {
-        return Ok(Vec::new());
-    }
-    let failure = || MechError::Matrix(MatrixError::NoEigenvalues { rows: size, columns: size });
-    let values = finite(matrix).ok_or_else(failure)?.eigenvalues().map_err(|_| failure())?;
-    Ok(values.iter().map(|value| (value.re, value.im)).collect())
-}
-
 /// An eigenvalue, as a pair of real and imaginary parts, with the components of an eigenvector as such pairs.
 pub(crate) type Eigenpair = ((f64, f64), Vec<(f64, f64)>);
 
 /// The eigenvalues of a square matrix, each with an eigenvector.
 ///
 /// # Errors
-/// As [`eigenvalues`].
+/// [`MatrixError::NoEigenvalues`] for a matrix with an entry that is not finite.
 pub(crate) fn eigenvectors(matrix: &Matrix<f64>) -> Result<Vec<Eigenpair>, MechError> {
     let size = matrix.rows();
     if size == 0 {

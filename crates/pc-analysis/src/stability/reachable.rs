@@ -51,7 +51,7 @@ impl Reachable {
     pub(super) fn neutral(&self, differentials: &[Vec<f64>]) -> Option<usize> {
         let spectrum = &self.spectrum;
         let &[count] = spectrum.zero_blocks() else { return None };
-        let damped = spectrum.eigenvalues().iter().filter(|value| value.real < -spectrum.tolerance()).count();
+        let damped = spectrum.eigenvalues().iter().filter(|value| value.real < 0.0).count();
         if damped + count != spectrum.eigenvalues().len() || spectrum.neutral() != count {
             return None;
         }

@@ -76,22 +76,37 @@ impl SecondVariation {
         shape("the state", state.len(), symbols.len())?;
         check_conserved(equations, integrals, &symbols)?;
 
+        let values = symbols.iter().copied().zip(state.iter().copied());
+        let values: Vec<(Expr<'g>, f64)> = values.chain(system.parameters().iter().copied()).collect();
+        SecondVariation::among((system.graph(), equations.energy(), integrals), (&symbols, &values), None)
+    }
+
+    /// The second variation of the energy under conserved functions, given with their names, at the `values` of the `state`
+    /// and of parameters; `directions` are the deviations of the state that are possible, as columns, all of them unless
+    /// they are given.
+    ///
+    /// A function may be any that is constant on the motions considered: an integral, a constraint on positions, or a
+    /// condition on velocities.
+    ///
+    /// # Errors
+    /// [`ExprError::UnboundSymbol`](pc_mech::ExprError::UnboundSymbol).
+    pub(crate) fn among<'g>(
+        (graph, energy, conserved): (&'g Graph, Expr<'g>, &[(String, Expr<'g>)]),
+        (state, values): (&[Expr<'g>], &[(Expr<'g>, f64)]),
+        directions: Option<&Matrix<f64>>,
+    ) -> Result<SecondVariation, AnalysisError> {
         let functions: Vec<Expr<'g>> =
-            [equations.energy()].into_iter().chain(integrals.iter().map(|&(_, f)| f)).collect();
-        let variables: Vec<Expr<'g>> =
-            symbols.iter().copied().filter(|&y| functions.iter().any(|f| f.depends_on(y))).collect();
-        let values: Vec<(Expr<'g>, f64)> = symbols
-            .iter()
-            .copied()
-            .zip(state.iter().copied())
-            .chain(system.parameters().iter().copied())
-            .collect();
-        let expansions: Vec<Expansion> = functions
-            .iter()
-            .map(|&f| expand(system.graph(), f, &variables, &values))
-            .collect::<Result<_, _>>()?;
-        let names = integrals.iter().map(|(name, _)| name.clone());
-        let mut result = decide(&expansions, 1.0 + norm(state))?;
+            [energy].into_iter().chain(conserved.iter().map(|&(_, f)| f)).collect();
+        let places: Vec<usize> =
+            (0..state.len()).filter(|&i| functions.iter().any(|f| f.depends_on(state[i]))).collect();
+        let variables: Vec<Expr<'g>> = places.iter().map(|&i| state[i]).collect();
+        let expansions: Vec<Expansion> =
+            functions.iter().map(|&f| expand(graph, f, &variables, values)).collect::<Result<_, _>>()?;
+        let directions =
+            directions.map(|all| Matrix::from_fn(places.len(), all.columns(), |i, j| all[(places[i], j)]));
+        let size = 1.0 + norm(&values.iter().take(state.len()).map(|&(_, y)| y).collect::<Vec<_>>());
+        let names = conserved.iter().map(|(name, _)| name.clone());
+        let mut result = decide(&expansions, size, directions.as_ref())?;
         result.variables = variables.iter().map(Expr::to_string).collect();
         result.multipliers = names.zip(result.multipliers).map(|(name, (_, value))| (name, value)).collect();
         Ok(result)
@@ -151,7 +166,12 @@ struct Multipliers {
 impl Multipliers {
     /// The multipliers for these expansions. `size` is the size of the state; a rounding error of the state
     /// changes dH by d²H times that error.
-    fn of(energy: &Expansion, integrals: &[Expansion], size: f64) -> Result<Multipliers, MechError> {
+    fn of(
+        energy: &Expansion,
+        integrals: &[Expansion],
+        size: f64,
+        directions: Option<&Matrix<f64>>,
+    ) -> Result<Multipliers, MechError> {
         let (n, count) = (energy.gradient.len(), integrals.len());
         let factors = SingularValues::of(&Matrix::from_fn(n, count, |i, j| integrals[j].gradient[i]))?;
         let largest = factors.values.first().copied().unwrap_or(0.0);
@@ -162,20 +182,50 @@ impl Multipliers {
         let weights: Vec<f64> = (0..rank).map(|l| -along(l) / factors.values[l]).collect();
         let lambda = |j: usize| (0..rank).map(|l| factors.right[(j, l)] * weights[l]).sum();
         let left_over: Vec<f64> = (rank..n).map(along).collect();
+        let kernel = match directions {
+            None => Matrix::from_fn(n, n - rank, |i, j| factors.left[(i, rank + j)]),
+            Some(directions) => kept_along(integrals, directions, rounding)?,
+        };
         let scale = norm(&energy.gradient).max(largest).max(norm(&energy.hessian.entries()) * size);
         Ok(Multipliers {
             lambda: (0..count).map(lambda).collect(),
             free: factors.kernel(rank),
             residual: if scale == 0.0 { 0.0 } else { norm(&left_over) / scale },
-            kernel: Matrix::from_fn(n, n - rank, |i, j| factors.left[(i, rank + j)]),
+            kernel,
             rounding,
         })
     }
 }
 
+/// An orthonormal basis of the deviations among `directions` with dI_j = 0.
+fn kept_along(
+    integrals: &[Expansion],
+    directions: &Matrix<f64>,
+    rounding: f64,
+) -> Result<Matrix<f64>, MechError> {
+    let factors = SingularValues::of(directions)?;
+    let rank = factors.rank(rounding * factors.values.first().copied().unwrap_or(0.0));
+    let basis = Matrix::from_fn(directions.rows(), rank, |i, j| factors.left[(i, j)]);
+    let slope = |j: usize, l: usize| {
+        let along: f64 = integrals[j].gradient.iter().zip(basis.column(l)).map(|(g, d)| g * d).sum();
+        let size = norm(&integrals[j].gradient);
+        // What a function has along the directions is rounding, if it is constant on them.
+        if along.abs() <= ALONG * size { 0.0 } else { along / size }
+    };
+    let factors = SingularValues::of(&Matrix::from_fn(integrals.len(), rank, slope))?;
+    Ok(product(&basis, &factors.kernel(factors.rank(rounding))))
+}
+
+/// A slope below this fraction of the gradient is rounding.
+const ALONG: f64 = 1e-10;
+
 /// The second variation from the expansions of H, I_1, I_2, …, without names.
-fn decide(expansions: &[Expansion], size: f64) -> Result<SecondVariation, MechError> {
-    let critical = Multipliers::of(&expansions[0], &expansions[1..], size)?;
+fn decide(
+    expansions: &[Expansion],
+    size: f64,
+    directions: Option<&Matrix<f64>>,
+) -> Result<SecondVariation, MechError> {
+    let critical = Multipliers::of(&expansions[0], &expansions[1..], size, directions)?;
     let rounding = critical.rounding;
     let hessians: Vec<Matrix<f64>> =
         expansions.iter().map(|expansion| restricted(&expansion.hessian, &critical.kernel)).collect();
@@ -195,6 +245,9 @@ fn decide(expansions: &[Expansion], size: f64) -> Result<SecondVariation, MechEr
         }
     }
     let certain = rounding + critical.residual;
+    // What is left of forms that cancel is rounding.
+    let clean = |entry: f64| if entry.abs() <= certain * largest { 0.0 } else { entry };
+    let forms: Vec<Matrix<f64>> = forms.iter().map(|form| form.map(clean)).collect();
     let weights =
         if critical.residual <= rounding.sqrt() { definite(&forms, largest, certain)? } else { None };
     let verdict = if weights.is_some() { Verdict::Stable } else { Verdict::Undecided };

@@ -3,6 +3,7 @@
 use pc_mech::{EvaluationError, Matrix, MechError, Motion, Pattern, VectorField};
 
 use crate::error::{AnalysisError, shape};
+use crate::numeric::equilibrated::{aside, larger};
 use crate::numeric::{dense::norm, newton};
 use crate::stability::spectrum::{Spectrum, Verdict};
 
@@ -57,6 +58,21 @@ impl SteadyOptions {
         SteadyOptions { fixed: names.into_iter().map(Into::into).collect(), ..self }
     }
 
+    /// The largest number of steps.
+    pub(crate) fn most_iterations(&self) -> usize {
+        self.iterations
+    }
+
+    /// The residual that counts as zero.
+    pub(crate) fn residual(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// The indices of the components that keep their values among the components with these names.
+    pub(crate) fn fixed_among(&self, names: &[String]) -> Result<Vec<usize>, AnalysisError> {
+        indices(names, &self.fixed)
+    }
+
     /// Whether the component keeps its value.
     pub(crate) fn holds(&self, name: &str) -> bool {
         self.fixed.iter().any(|fixed| fixed == name)
@@ -92,6 +108,8 @@ pub struct SteadyMotion {
     pub first_approximation: Matrix<f64>,
     /// Its spectrum.
     pub spectrum: Spectrum,
+    /// The uncertainty of the state, relative to 1 + |y|.
+    pub(crate) uncertainty: f64,
 }
 
 impl SteadyMotion {
@@ -135,7 +153,7 @@ impl SteadyMotion {
     ) -> Result<SteadyMotion, AnalysisError> {
         shape("the guess", guess.len(), motion.dim())?;
         let cyclic = cyclic_among(motion, options.cyclic.as_deref())?;
-        let fixed = components(motion, &options.fixed)?;
+        let fixed = options.fixed_among(motion.names())?;
         let kept: Vec<usize> = (0..motion.dim()).filter(|i| !cyclic.contains(i)).collect();
         let free: Vec<usize> = kept.iter().copied().filter(|i| !fixed.contains(i)).collect();
 
@@ -157,21 +175,42 @@ impl SteadyMotion {
         for (&j, &value) in free.iter().zip(&end.point) {
             state[j] = value;
         }
-        let residual = norm(&end.values[..kept.len()]);
-        if !end.is_solution(options.tolerance) {
+        if !end.is_solution(options.tolerance) || end.error > NEAR {
+            let residual = norm(&end.values[..kept.len()]);
             let state = motion.names().iter().cloned().zip(state).collect();
             return Err(AnalysisError::NoSteadyMotion { residual, iterations: end.iterations, t, state });
         }
+        let uncertainty = end.relative_residual().max(end.error);
+        SteadyMotion::at(motion, (t, state), (&cyclic, &[]), uncertainty)
+    }
+
+    /// The steady motion at a state, except that the `moving` coordinates have constant rates and the `varying`
+    /// components follow from the others. The conditions of steady motion hold up to `uncertainty`, relative to the effect
+    /// of a change of the state by its own size.
+    ///
+    /// # Errors
+    /// [`AnalysisError::NotSmooth`]; otherwise as [`first_approximation`].
+    pub(crate) fn at(
+        motion: &mut Motion,
+        (t, state): (f64, Vec<f64>),
+        (moving, varying): (&[usize], &[usize]),
+        uncertainty: f64,
+    ) -> Result<SteadyMotion, AnalysisError> {
+        let kept: Vec<usize> = (0..motion.dim()).filter(|i| !moving.contains(i)).collect();
         let rates = motion.rates(t, &state)?;
-        let matrix = part(&first_approximation(motion, t, &state)?, &kept, &kept);
+        let whole = first_approximation(motion, t, &state)?;
+        let matrix = part(&whole, &kept, &kept);
         check_smooth(motion, t, &state, &kept, &matrix)?;
+        let noise = part(&errors(motion, (t, &state), &whole, uncertainty), &kept, &kept);
+        let is_constant = |i: &&usize| !varying.contains(i);
         Ok(SteadyMotion {
-            residual,
-            rates: cyclic.iter().map(|&i| (motion.names()[i].clone(), rates[i])).collect(),
+            residual: norm(&kept.iter().filter(is_constant).map(|&i| rates[i]).collect::<Vec<_>>()),
+            rates: moving.iter().map(|&i| (motion.names()[i].clone(), rates[i])).collect(),
             components: kept.iter().map(|&i| motion.names()[i].clone()).collect(),
-            spectrum: Spectrum::of(&matrix, end.relative_residual())?,
+            spectrum: Spectrum::with_noise(&matrix, &noise)?,
             first_approximation: matrix,
             state,
+            uncertainty,
         })
     }
 
@@ -195,6 +234,32 @@ pub fn first_approximation(motion: &mut Motion, t: f64, y: &[f64]) -> Result<Mat
     let mut entries = vec![0.0; n * n];
     motion.jacobian(t, y, &mut entries)?;
     Ok(Matrix::from_fn(n, n, |i, j| entries[i + j * n]))
+}
+
+/// The next step of Newton's method at a solution, relative to 1 + |y|, is at most this: forces that decay with distance
+/// fall below any residual on the way to infinity, in steps as long as the way.
+pub(crate) const NEAR: f64 = 1e-2;
+
+/// A change of the state by a few rounding errors, and the margin by which the changes it causes are exceeded.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+const SAFETY: f64 = 8.0;
+
+/// The errors of the first approximation at (t, y): its changes as the state changes by rounding, or by its `uncertainty`
+/// relative to 1 + |y|. They exceed the rounding of single numbers where large forces cancel.
+pub(crate) fn errors(
+    motion: &mut Motion,
+    (t, state): (f64, &[f64]),
+    approximation: &Matrix<f64>,
+    uncertainty: f64,
+) -> Matrix<f64> {
+    let mut errors = approximation.map(|_| 0.0);
+    for side in [1.0, -1.0] {
+        let beside = aside(state, side * uncertainty.max(ROUNDING));
+        let Ok(there) = first_approximation(motion, t, &beside) else { continue };
+        let change = |i: usize, j: usize| SAFETY * (there[(i, j)] - approximation[(i, j)]);
+        errors = larger(&errors, &Matrix::from_fn(errors.rows(), errors.columns(), change));
+    }
+    errors
 }
 
 /// At the distance `BESIDE`, relative to 1 + |y|, derivatives differ from those at the state by at most
@@ -233,25 +298,21 @@ pub(crate) fn check_smooth(
 }
 
 /// The indices of the components with these names.
-fn components(motion: &Motion, names: &[String]) -> Result<Vec<usize>, AnalysisError> {
-    let find = |name: &String| motion.names().iter().position(|known| known == name);
-    names
-        .iter()
-        .map(|name| {
-            find(name).ok_or_else(|| AnalysisError::UnknownComponent {
-                name: name.clone(),
-                known: motion.names().to_vec(),
-            })
-        })
-        .collect()
+fn indices(known: &[String], names: &[String]) -> Result<Vec<usize>, AnalysisError> {
+    let place = |name: &String| {
+        let place = known.iter().position(|known| known == name);
+        place.ok_or_else(|| AnalysisError::UnknownComponent { name: name.clone(), known: known.to_vec() })
+    };
+    names.iter().map(place).collect()
 }
 
 /// The indices of the cyclic coordinates: of the named ones, or of all.
 fn cyclic_among(motion: &Motion, named: Option<&[String]>) -> Result<Vec<usize>, AnalysisError> {
     let pattern =
         motion.sparsity().ok_or(MechError::Evaluation(EvaluationError::NotCompiled { what: "Jacobian" }))?;
-    let Some(named) = named else { return Ok(cyclic_coordinates(pattern, motion.coordinates())) };
-    let cyclic = components(motion, named)?;
+    let all: Vec<usize> = (0..motion.coordinates()).collect();
+    let Some(named) = named else { return Ok(cyclic_coordinates(pattern, &all)) };
+    let cyclic = indices(motion.names(), named)?;
     for &j in &cyclic {
         let other = pattern.column(j).iter().find(|i| !cyclic.contains(i));
         if let Some(&i) = other {
@@ -262,9 +323,9 @@ fn cyclic_among(motion: &Motion, named: Option<&[String]>) -> Result<Vec<usize>,
     Ok(cyclic)
 }
 
-/// The largest set of coordinates on which no rates depend except those of the set itself.
-pub(crate) fn cyclic_coordinates(pattern: &Pattern, coordinates: usize) -> Vec<usize> {
-    let mut cyclic: Vec<usize> = (0..coordinates).collect();
+/// The largest set of `candidates` among the coordinates on which no rates depend except those of the set itself.
+pub(crate) fn cyclic_coordinates(pattern: &Pattern, candidates: &[usize]) -> Vec<usize> {
+    let mut cyclic = candidates.to_vec();
     loop {
         let ends_in = |j: &usize| pattern.column(*j).iter().all(|i| cyclic.contains(i));
         let rest: Vec<usize> = cyclic.iter().copied().filter(ends_in).collect();

@@ -16,10 +16,6 @@ const MOST_STEEPER: f64 = 1e6;
 /// The largest number of steps of Newton's method.
 const MOST_STEPS: usize = 50;
 
-/// The largest number of components of the state: each step decomposes a full matrix of that size, which
-/// beyond this takes some tenths of a second.
-const MOST_COMPONENTS: usize = 200;
-
 /// An equilibrium or a steady motion of an autonomous system near its start.
 #[derive(Clone, Debug)]
 pub struct NearbySteadyMotion {
@@ -76,66 +72,6 @@ pub enum Stability {
     },
 }
 
-/// The result of the search.
-#[derive(Clone, Debug)]
-pub enum SteadySearch {
-    /// The equations depend on time.
-    NotAutonomous,
-    /// Fewer functions of the coordinates are known than are constant along motions in the frame: a solution
-    /// might be unreachable.
-    SurfaceUnknown,
-    /// The constraints leave no velocities that are independent of each other.
-    Nonlinear,
-    /// The state has too many components.
-    TooLarge {
-        /// The number of neutral directions.
-        components: usize,
-    },
-    /// Newton's method did not converge, or converged far from the start.
-    None,
-    /// A steady motion was found.
-    Found(Box<NearbySteadyMotion>),
-}
-
-impl SteadySearch {
-    /// The steady motion of `equations` near the start (t, y), among the states at which the relations
-    /// between dependent coordinates hold; `positions` are the relations that constraints imply, and
-    /// `integrals` are the known integrals.
-    pub fn near<'g>(
-        equations: &Equations<'g>,
-        motion: &mut Motion,
-        (t_start, start): (f64, &[f64]),
-        integrals: &[Integral<'g>],
-        positions: &[(String, Expr<'g>)],
-    ) -> SteadySearch {
-        if !is_autonomous(equations) {
-            return SteadySearch::NotAutonomous;
-        }
-        if start.len() > MOST_COMPONENTS {
-            return SteadySearch::TooLarge { components: start.len() };
-        }
-        let known = Known::of(equations, integrals);
-        let Some(seeker) = Seeker::new(equations, motion, (t_start, start), &known, positions) else {
-            return SteadySearch::None;
-        };
-        for same in known.choices() {
-            let same = seeker.with_positions(same, positions);
-            let Some(surface) = Surface::new(equations, &same, start) else {
-                return SteadySearch::SurfaceUnknown;
-            };
-            let options = SteadyOptions::default();
-            let Some(found) = seeker.steady_motion(motion, start, &options, &surface) else { continue };
-            let same = same.into_iter().map(|(name, _)| name).collect();
-            let Ok(steady) = seeker.described(&found, start, same) else { continue };
-            // A result farther from the start than the size of the start is not near it.
-            if steady.distance <= 1.0 + seeker.size(&found, start) {
-                return SteadySearch::Found(Box::new(steady));
-            }
-        }
-        SteadySearch::None
-    }
-}
-
 /// Whether the equations are independent of time and inputs, for the present parameters.
 pub(crate) fn is_autonomous(equations: &Equations<'_>) -> bool {
     let system = equations.system();
@@ -165,6 +101,8 @@ pub(crate) struct Seeker<'a, 'g> {
     equations: &'a Equations<'g>,
     bound: Equations<'g>,
     integrals: Vec<(String, Expr<'g>)>,
+    /// All integrals, dependent ones too.
+    all: Vec<(String, Expr<'g>)>,
     /// The functions of the coordinates that are constant along all motions.
     relations: Vec<Expr<'g>>,
     t: f64,
@@ -182,10 +120,12 @@ impl<'a, 'g> Seeker<'a, 'g> {
         positions: &[(String, Expr<'g>)],
     ) -> Option<Seeker<'a, 'g>> {
         let slopes = first_approximation(motion, t, start).ok()?;
-        let (bound, integrals) = (equations.with_parameters_bound(), known.integrals.clone());
+        let (bound, integrals, all) =
+            (equations.with_parameters_bound(), known.integrals.clone(), known.all.clone());
         let positions = positions.iter().map(|&(_, position)| bind(equations.system(), position));
         let relations = known.of_coordinates.iter().map(|&(_, f)| f).chain(positions).collect();
-        Some(Seeker { equations, bound, integrals, relations, t, steepest: MOST_STEEPER * largest(&slopes) })
+        let steepest = MOST_STEEPER * largest(&slopes);
+        Some(Seeker { equations, bound, integrals, all, relations, t, steepest })
     }
 
     /// The functions `same`, and those of the positions that are independent of them.
@@ -227,7 +167,20 @@ impl<'a, 'g> Seeker<'a, 'g> {
         start: &[f64],
         same: Vec<String>,
     ) -> Result<NearbySteadyMotion, AnalysisError> {
-        let second = SecondVariation::under(&self.bound, &self.integrals, &found.state).ok();
+        // An integral that contains a cyclic coordinate changes with it, at constant values of the others. A dependent
+        // integral adds a direction that is kept, unless it has no derivatives there.
+        let symbols = self.equations.system().state();
+        let cyclic: Vec<Expr<'g>> =
+            symbols.into_iter().filter(|y| !found.components.contains(&y.to_string())).collect();
+        let under = |integrals: &[(String, Expr<'g>)]| {
+            let own = integrals.iter().filter(|(_, f)| !cyclic.iter().any(|&x| f.depends_on(x))).cloned();
+            SecondVariation::under(&self.bound, &own.collect::<Vec<_>>(), &found.state).ok()
+        };
+        let is_decisive = |second: &SecondVariation| second.verdict == Verdict::Stable;
+        let second = under(&self.integrals)
+            .filter(is_decisive)
+            .or_else(|| under(&self.all))
+            .or_else(|| under(&self.integrals));
         let second_variation = second.map(|second| EnergyCriterion {
             verdict: second.verdict,
             variables: Some(second.variables).filter(|variables| *variables != found.components),
@@ -263,11 +216,6 @@ impl<'a, 'g> Seeker<'a, 'g> {
         let is_kept = |&i: &usize| found.components.contains(&symbols[i].to_string());
         let kept: Vec<usize> = (0..symbols.len()).filter(is_kept).collect();
         Ok(Reachable::of(found, &kept, &normals)?)
-    }
-
-    /// The length of the vector formed by those components of the start that are not cyclic.
-    fn size(&self, found: &SteadyMotion, start: &[f64]) -> f64 {
-        self.kept(found, start).iter().map(|(_, _, start)| start * start).sum::<f64>().sqrt()
     }
 
     /// The names of the components that are not cyclic, with their values in the motion and at the start.
@@ -319,6 +267,8 @@ pub(crate) fn largest(matrix: &Matrix<f64>) -> f64 {
 /// replaced by numbers.
 pub(crate) struct Known<'g> {
     integrals: Vec<(String, Expr<'g>)>,
+    /// All integrals that do not contain time, whether they are independent or not.
+    all: Vec<(String, Expr<'g>)>,
     /// The Casimirs among them.
     casimirs: Vec<(String, Expr<'g>)>,
     /// The functions of the coordinates among them.
@@ -332,9 +282,17 @@ impl<'g> Known<'g> {
         let variables = system.state();
         let is_of_coordinates = |f: Expr<'g>| !eta.iter().any(|&eta| f.depends_on(eta));
         let mut independent = vec![bind(system, equations.energy())];
-        let mut known = Known { integrals: Vec::new(), casimirs: Vec::new(), of_coordinates: Vec::new() };
+        let mut known = Known {
+            integrals: Vec::new(),
+            all: Vec::new(),
+            casimirs: Vec::new(),
+            of_coordinates: Vec::new(),
+        };
         for integral in integrals.iter().filter(|integral| integral.is_conserved() && !integral.is_energy()) {
             let value = bind(system, integral.value);
+            if !value.depends_on(system.frame().time()) {
+                known.all.push((integral.name.clone(), value));
+            }
             independent.push(value);
             let is_new = rank_of_gradients(graph, &independent, &variables) == independent.len();
             if value.depends_on(system.frame().time()) || !is_new {

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use pc_analysis::{
-    AnalysisError, Equilibria, EquilibriumSearch, Integrals, Leaf, Linearizer, Stability, Verdict,
+    AnalysisError, Conserved, Equilibria, EquilibriumSearch, Integrals, Leaf, Linearizer, Stability, Verdict,
 };
 use pc_mech::{Expr, Graph, Neighbourhood, System};
 
@@ -16,13 +16,15 @@ fn search(
     search: &EquilibriumSearch,
 ) -> Result<Equilibria, AnalysisError> {
     let equations = system.poincare().unwrap();
-    let mut linearizer = Linearizer::new(&equations, &Leaf::of(system), &[]).unwrap();
+    let leaf = Leaf::of(system);
+    let mut linearizer = Linearizer::new(&equations, &leaf, &[]).unwrap();
     let state = system.state().into_iter().zip(start.iter().copied());
     let time = (system.frame().time(), 0.0);
     let near =
         Neighbourhood { centre: state.chain([time]).chain(system.parameters().iter().copied()).collect() };
     let integrals = Integrals::find(&equations, &near);
-    search.run(&equations, &mut linearizer, (0.0, start), integrals.list())
+    let conserved = Conserved::of(&equations, None, &leaf, integrals.list());
+    search.run(&mut linearizer, (0.0, start), &conserved)
 }
 
 fn bead<'g>(graph: &'g Graph, turn: f64, damping: f64) -> System<'g> {
@@ -43,8 +45,8 @@ fn a_bead_leaves_the_bottom_by_a_pitchfork() {
     let slow = search(&bead(&graph, 0.8, 0.0), &[0.3, 0.1], &all).unwrap();
     assert_eq!(slow.list.len(), 2);
     assert!(slow.list[0].state[0].abs() < EXACT && (slow.list[1].state[0] - PI).abs() < EXACT);
-    assert_eq!(slow.list[0].motion.stability(), Stability::BySecondVariation { variables: None });
-    let frequency = slow.list[0].motion.eigenvalues[0].imaginary;
+    assert_eq!(slow.list[0].stability.clone(), Stability::BySecondVariation { variables: None });
+    let frequency = slow.list[0].linearization.spectrum.eigenvalues()[0].imaginary;
     assert!((frequency - 0.6).abs() < EXACT, "{frequency}");
     assert!(slow.list.iter().all(|one| one.family == 0));
 
@@ -60,12 +62,14 @@ fn a_bead_leaves_the_bottom_by_a_pitchfork() {
             assert!((place - expected).abs() < EXACT, "{places:?}");
         }
         assert_eq!(places.len(), 4);
-        assert_eq!([&fast[0], &fast[1]].map(|one| one.motion.stability()), [beside.clone(), beside]);
+        assert_eq!([&fast[0], &fast[1]].map(|one| one.stability.clone()), [beside.clone(), beside]);
         let unstable = Stability::ByFirstApproximation(Verdict::Unstable);
-        assert_eq!([&fast[2], &fast[3]].map(|one| one.motion.stability()), [unstable.clone(), unstable]);
+        assert_eq!([&fast[2], &fast[3]].map(|one| one.stability.clone()), [unstable.clone(), unstable]);
         assert!((fast[1].energy + 1.25).abs() < EXACT, "{}", fast[1].energy);
-        let (found, expected) =
-            (fast[1].motion.eigenvalues[0].imaginary, (1.5f64 - damping * damping / 4.0).sqrt());
+        let (found, expected) = (
+            fast[1].linearization.spectrum.eigenvalues()[0].imaginary,
+            (1.5f64 - damping * damping / 4.0).sqrt(),
+        );
         assert!((found - expected).abs() < EXACT, "{found} {expected}");
     }
 }

@@ -1,8 +1,8 @@
 //! First integrals found from an ansatz.
 
 use crate::common;
-use pc_analysis::{Ansatz, Conservation, PoissonBracket, Rates};
-use pc_mech::{Expr, Graph, LieAlgebra, System};
+use pc_analysis::{Ansatz, Conservation, ConservationVerdict, Integral, Integrals, PoissonBracket, Rates};
+use pc_mech::{Expr, Graph, LieAlgebra, Neighbourhood, System};
 
 fn top<'g>(graph: &'g Graph, inertia: [f64; 3], m: [f64; 3]) -> System<'g> {
     common::top(graph, inertia, m).build().unwrap()
@@ -245,7 +245,7 @@ fn a_sleigh_keeps_its_energy() {
     assert_eq!(texts(&found), ["4*v^2 + 5*ω^2"]);
 }
 
-/// Parameters may stand in the functions: Euler's top with symbols for its moments of inertia.
+/// Coefficients are functions of the parameters: Euler's top with symbols for its moments of inertia.
 #[test]
 fn parameters_may_stay_symbols() {
     let graph = Graph::new();
@@ -262,9 +262,12 @@ fn parameters_may_stay_symbols() {
     let rates = Rates::poincare(&top.poincare().unwrap());
     let [w1, w2, w3] = graph.symbols(["ω1", "ω2", "ω3"]);
     let [x, y, z] = [a * w1.square(), b * w2.square(), c * w3.square()];
-    assert_eq!(rates.integrals_among(&[x, y, z]).unwrap(), [x + y + z]);
-    assert_eq!(rates.integrals_among(&[a * x, b * y, c * z]).unwrap(), [a * x + b * y + c * z]);
-    assert!(rates.integrals_among(&[w1.square(), w2.square(), w3.square()]).unwrap().is_empty());
+    for functions in [[x, y, z], [a * x, b * y, c * z], [w1, w2, w3].map(Expr::square)] {
+        let found = rates.integrals_among(&functions).unwrap();
+        assert_eq!(found.len(), 2);
+        assert!(found.iter().all(|&f| rates.verdict(f).unwrap() == Conservation::Conserved));
+    }
+    assert!(rates.integrals_among(&[w1.square(), w1 * w2]).unwrap().is_empty());
     assert_eq!(rates.with_parameters_bound().integrals(&rates.ansatz(2, 0)).unwrap().len(), 2);
 }
 
@@ -362,5 +365,30 @@ fn a_charge_in_a_field_keeps_its_canonical_momentum() {
         let speed = along.square() + across.square();
         assert_eq!(found.len(), usize::from(steady), "{found:?}");
         assert!(!steady || is_function_of(&graph, speed, &[linear[0], found[0]]));
+    }
+}
+
+/// Integrals that exist for special values only are found, also where these values are no short rationals, and are said to
+/// hold for them: the spin of a free body with two equal moments of inertia, given by two parameters.
+#[test]
+fn special_values_have_integrals_of_their_own() {
+    for moment in [0.7, 2f64.sqrt()] {
+        let graph = Graph::new();
+        let [a, b, c] = graph.symbols(["A", "B", "C"]);
+        let top = System::builder(&graph)
+            .parameter(a, moment)
+            .parameter(b, moment)
+            .parameter(c, std::f64::consts::PI)
+            .quasi_velocities(["ω1", "ω2", "ω3"])
+            .algebra(&LieAlgebra::so3())
+            .lagrangian(|_, _, w| (a * w[0].square() + b * w[1].square() + c * w[2].square()) / 2.0)
+            .build()
+            .unwrap();
+        let at = ["t", "ω1", "ω2", "ω3"].map(|name| (graph.symbol(name), 0.5));
+        let centre = at.into_iter().chain(top.parameters().iter().copied()).collect();
+        let found = Integrals::find(&top.poincare().unwrap(), &Neighbourhood { centre });
+        let here = |f: &&Integral<'_>| f.verdict == ConservationVerdict::ConservedHere;
+        let here: Vec<String> = found.list().iter().filter(here).map(|f| f.value.to_string()).collect();
+        assert_eq!(here, ["C*ω3"], "{moment}");
     }
 }

@@ -10,8 +10,8 @@ use crate::ffi::status::pc_status;
 use crate::machinery::draft::{Draft, Section, number, quoted};
 
 /// Sets a function S of time, coordinates and constants that is claimed to solve
-/// Hamilton–Jacobi's equation; pc_system_theory examines the claim. Motions do not depend on this
-/// function.
+/// Hamilton–Jacobi's equation; pc_system_theory examines the claim, and compares the motion from
+/// the start with the one that Jacobi's theorem gives. Motions do not depend on this function.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_action(
     model: *mut pc_model,

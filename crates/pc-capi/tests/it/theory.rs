@@ -74,6 +74,43 @@ fn an_action_set_by_calls_is_checked() {
     }
     let said = theory(&model.system(PC_POINCARE).unwrap(), 0, 1, &[]).unwrap();
     assert!(said.contains("action: S = x a - ½ t a²   (proved)") && said.contains("complete: "), "{said}");
+    assert!(said.contains("Jacobi's theorem: ∂S/∂a = x - t a"), "{said}");
+}
+
+/// Whether the functions are canonical variables, as text.
+fn canonical_variables(system: &System, proposed: &[(&str, &str)]) -> Result<String, Refusal> {
+    let [names, functions] = [0, 1].map(|part: usize| -> Vec<CString> {
+        proposed.iter().map(|new| c(if part == 0 { new.0 } else { new.1 })).collect()
+    });
+    let pointers =
+        |texts: &[CString]| -> Vec<*const c_char> { texts.iter().map(|text| text.as_ptr()).collect() };
+    let (names, functions) = (pointers(&names), pointers(&functions));
+    let mut text = ptr::null_mut();
+    call(|error| unsafe {
+        // SAFETY: a live system, texts that live as long as the call, and a place for a text.
+        pc_system_canonical_variables(
+            system.0,
+            0,
+            names.as_ptr(),
+            functions.as_ptr(),
+            names.len(),
+            &raw mut text,
+            error,
+        )
+    })?;
+    Ok(taken(text))
+}
+
+#[test]
+fn functions_are_tested_as_canonical_variables() {
+    let system = Model::text(KEPLER).unwrap().system(PC_POINCARE).unwrap();
+    let polar = [("R", "r"), ("Φ", "atan2(y, x)"), ("P", "(x*p_x + y*p_y)/r"), ("L", "x*p_y - y*p_x")];
+    let said = canonical_variables(&system, &polar).unwrap();
+    assert!(said.contains("canonical proved: (X_i, Y_j) = δ_ij, all others zero"), "{said}");
+    let said = canonical_variables(&system, &[("X", "x^2"), ("Y", "p_x")]).unwrap();
+    assert!(said.contains("(X, Y) = 2 x   (canonical disproved)"), "{said}");
+    let odd = canonical_variables(&system, &polar[..3]).unwrap_err();
+    assert!(odd.message.contains("as many coordinates as momenta"), "{}", odd.message);
 }
 
 #[test]

@@ -75,8 +75,18 @@ impl Handles {
                 SystemCall::Theory(format, degree) => {
                     let (mut text, format) = (ptr::null_mut(), c_int::from(*format));
                     let place = &raw mut text;
-                    let outcome = self.call(|error| {
-                        pc_system_theory(system, format, usize::from(*degree), ptr::null(), 0, place, error)
+                    let outcome = self.call(|error| match degree {
+                        0 | 1 => {
+                            let degree = usize::from(*degree);
+                            pc_system_theory(system, format, degree, ptr::null(), 0, place, error)
+                        }
+                        _ => {
+                            let (names, functions) = ([c("Q"), c("P")], [c("2*x"), c("x'")]);
+                            let names = names.each_ref().map(|name| name.as_ptr());
+                            let functions = functions.each_ref().map(|function| function.as_ptr());
+                            let (names, functions) = (names.as_ptr(), functions.as_ptr());
+                            pc_system_canonical_variables(system, format, names, functions, 2, place, error)
+                        }
                     });
                     free_text(text);
                     outcome

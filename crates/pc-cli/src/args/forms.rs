@@ -17,12 +17,16 @@ pub(super) fn form(text: &str) -> Result<Form, String> {
 pub(super) fn emit_form(text: &str) -> Result<Variables, String> {
     let forms = Variables::ALL.into_iter().filter(|form| !form.has_momenta());
     let named: Vec<(&str, Variables)> = forms.map(|form| (form.name(), form)).collect();
-    choice(text, &named, &["canonical", "lagrange", "voronets", "lie-poisson"])
+    let others =
+        Form::ALL.map(Form::name).into_iter().filter(|name| named.iter().all(|(known, _)| known != name));
+    choice(text, &named, &others.collect::<Vec<_>>())
 }
 
 /// The form with this name, if it can be integrated.
 pub(super) fn run_form(text: &str) -> Result<Variables, String> {
-    choice(text, &Variables::ALL.map(|form| (form.name(), form)), &["lagrange", "voronets"])
+    let named = Variables::ALL.map(|form| (form.name(), form));
+    let printed = Form::ALL.into_iter().filter(|form| form.variables().is_none());
+    choice(text, &named, &printed.map(Form::name).collect::<Vec<_>>())
 }
 
 /// A parser that turns each of these words, listed with its help, into its value.
@@ -66,7 +70,8 @@ mod tests {
         assert_eq!(method("taylor"), Ok(Method::Taylor));
         assert_eq!(method("rk4").unwrap_err(), "use adams, bdf, dop853, taylor or auto");
         assert_eq!(run_form("lie-poisson"), Ok(Variables::ReducedMomenta));
-        let refused = "`canonical` is not supported yet; use poincare, reduced, orthonormal or hamel";
+        let refused =
+            "`canonical` is not supported yet; use poincare, reduced, orthonormal, hamel or voronets";
         assert_eq!(emit_form("canonical").unwrap_err(), refused);
     }
 }

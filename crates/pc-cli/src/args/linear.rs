@@ -25,6 +25,7 @@ pub enum MatrixFormat {
                         pc linearize furuta-pendulum --set θ=0.1\n  \
                         pc linearize cart-pole --format json\n  \
                         pc linearize whipple-bicycle --set roll=0 --vary v0=0:10:101 -o bicycle.csv --plot bicycle.svg\n  \
+                        pc linearize quadrotor --free f1,f2,f3,f4,θ,φ --set p=0 --set q=0 --set s=0\n  \
                         pc linearize heavy-top-euler --at start -o top.mat\n\
                         Given are the matrices of δẏ = A δy + B δu and δh = C δy + D δu, u the [inputs] and h the [outputs] of the model, \
                         the eigenvalues and modes of A, and M, G, K, F of M q̈ + G q̇ + K q = F u where that is defined. \
@@ -38,6 +39,10 @@ pub struct LinearizeArguments {
     /// The state.
     #[command(flatten)]
     pub state: StateArguments,
+    /// Choose these inputs and components of the state, separated by commas, so that the state is steady (trim); all others keep
+    /// their values
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', conflicts_with_all = ["at", "hold", "vary"])]
+    pub free: Vec<String>,
     /// Follow the eigenvalues over N evenly spaced values of a parameter or start value, both ends included: the root locus
     #[arg(long, value_name = "NAME=FROM:TO:N")]
     pub vary: Option<Vary>,

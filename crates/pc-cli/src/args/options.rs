@@ -108,8 +108,10 @@ pub struct DeriveArguments {
     pub velocities: VelocityArguments,
     /// Form of the equations: poincare, canonical (in momenta), lagrange (in velocities, with multipliers where there
     /// are constraints), voronets (constraints solved for velocities), reduced (without coordinates that nothing depends on:
-    /// Euler–Poincaré), lie-poisson (the same in momenta), orthonormal (in a frame that is orthonormal in the kinetic metric)
-    /// or hamel (in the quasi-velocities NAME=EXPR) [default: that of the file, or poincare]
+    /// Euler–Poincaré), lie-poisson (the same in momenta), orthonormal (in a frame that is orthonormal in the kinetic metric),
+    /// hamel (in the quasi-velocities NAME=EXPR), maggi (Lagrange's expressions along the independent velocities), kane (active
+    /// and inertia forces) or gibbs-appell (derivatives of the energy of the accelerations) [default: that of the file, or
+    /// poincare]
     #[arg(long, value_name = "FORM", value_parser = form)]
     pub form: Option<Form>,
     /// How to print
@@ -124,6 +126,13 @@ pub struct DeriveArguments {
     /// Write out the definitions of the model instead of naming them
     #[arg(long)]
     pub inline: bool,
+    /// Print brackets by their coefficients c_rs^m, the symbols γ_rs^m of Boltzmann and Hamel
+    #[arg(long)]
+    pub symbols: bool,
+    /// Print all reactions λ as functions of the state, and their forces on the velocities; in the forms poincare, lagrange,
+    /// voronets, maggi, kane and gibbs-appell
+    #[arg(long)]
+    pub reactions: bool,
     /// Verification.
     #[command(flatten)]
     pub verify: VerifyArguments,
@@ -150,6 +159,10 @@ pub struct TheoryArguments {
     /// polynomials in the coordinates, or in their sines and cosines, are always tried
     #[arg(long, value_name = "EXPRESSIONS", num_args = 1..)]
     pub functions: Vec<String>,
+    /// Test functions as canonical variables: new coordinates, then as many new momenta, in coordinates, velocities and momenta
+    /// such as p_x
+    #[arg(long, value_name = "NAME=EXPR", num_args = 1.., value_parser = definition)]
+    pub canonical: Vec<Setting>,
     /// How to print
     #[arg(long, default_value = "text")]
     pub format: Page,
@@ -242,7 +255,7 @@ pub struct RunArguments {
     /// Tolerances and method.
     #[command(flatten)]
     pub integration: IntegrationArguments,
-    /// Form of the equations: poincare, canonical, reduced, lie-poisson, orthonormal or hamel (see `pc derive --help`).
+    /// Form of the equations: poincare, canonical, reduced, lie-poisson, orthonormal, voronets or hamel (see `pc derive --help`).
     /// The columns are the same in every form, except that reduced and lie-poisson lack some coordinates, and hamel adds each
     /// NAME after the outputs [default: the file's, or poincare]
     #[arg(long, value_name = "FORM", value_parser = run_form)]
@@ -322,7 +335,7 @@ pub struct EmitArguments {
     /// Velocities.
     #[command(flatten)]
     pub velocities: VelocityArguments,
-    /// Form of the equations: poincare, reduced, orthonormal or hamel (see `pc derive --help`)
+    /// Form of the equations: poincare, reduced, orthonormal, voronets or hamel (see `pc derive --help`)
     #[arg(long, value_name = "FORM", default_value = "poincare", value_parser = emit_form)]
     pub form: Variables,
     /// Leave out the Jacobian

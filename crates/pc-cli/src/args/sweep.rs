@@ -69,7 +69,7 @@ pub struct SweepArguments {
     /// Tolerances and method.
     #[command(flatten)]
     pub integration: IntegrationArguments,
-    /// Form of the equations, as for `pc run`: poincare, canonical, reduced, lie-poisson, orthonormal, or hamel where the file gives the
+    /// Form of the equations, as for `pc run`: poincare, canonical, reduced, lie-poisson, orthonormal, voronets, or hamel where the file gives the
     /// quasi-velocities; columns are those of `pc run` in this form [default: the file's, or poincare]
     #[arg(long, value_name = "FORM", value_parser = run_form)]
     pub form: Option<Variables>,

@@ -24,6 +24,7 @@ use pc_run::motion::remarks::say_moved;
 /// [`CliError`] of the model; `FileError::Write`.
 pub fn command(arguments: &BenchArguments) -> Result<(), CliError> {
     let model = input::open(&arguments.model)?;
+    model.require_values()?;
     // Each derivation has the full memory limit; the time limit holds for all of them together.
     let fresh = || -> Model {
         let mut model = model.clone();

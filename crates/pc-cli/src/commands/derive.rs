@@ -20,16 +20,26 @@ pub fn command(arguments: &DeriveArguments) -> Result<(), CliError> {
     let model = input::open_in(&arguments.model, &arguments.velocities, is_hamel)?;
     let written = model.document().simulation.form.as_ref().map(|form| form.value.into());
     let form = arguments.form.or(written).unwrap_or(Form::Poincare);
+    if arguments.reactions && !form.has_reactions() {
+        return Err(CliError::NoReactions { form: form.name() });
+    }
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     say_dropped(&assembly, &Terminal);
     say_moved(&assembly, &Terminal);
     say_changing_masses(&assembly, &Terminal);
-    let layout = Layout { width: arguments.width.into(), brief: arguments.brief, inline: arguments.inline };
+    let layout = Layout {
+        width: arguments.width.into(),
+        brief: arguments.brief,
+        inline: arguments.inline,
+        reactions: arguments.reactions,
+        symbols: arguments.symbols,
+    };
     let page = page(form, arguments.format.into(), &layout, model.title(), &assembly)?;
     assembly.within_limits()?;
     if !arguments.verify.no_verify {
-        vouched(&model, &assembly, Outlet::Page(form), &Terminal)?;
+        let outlet = if arguments.reactions { Outlet::PageWithReactions(form) } else { Outlet::Page(form) };
+        vouched(&model, &assembly, outlet, &Terminal)?;
     }
     print(|out| write!(out, "{page}"))
 }

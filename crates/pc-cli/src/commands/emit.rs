@@ -33,6 +33,7 @@ const NO_TABLES: &str = "The tables of inputs are not part of this source: their
 /// [`CliError`].
 pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
     let model = input::open_in(&arguments.model, &arguments.velocities, arguments.form == Variables::Given)?;
+    model.require_values()?;
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     let (equations, form) = assembly.equations_of(arguments.form)?;

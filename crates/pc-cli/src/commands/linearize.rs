@@ -25,7 +25,11 @@ pub fn command(arguments: &LinearizeArguments) -> Result<(), CliError> {
     }
     let model = input::open(&arguments.model)?;
     let verify = !arguments.verify.no_verify;
-    let linear = Linearized::of(&model, &arguments.state.choice(), verify, &Terminal)?;
+    let state = arguments.state.choice();
+    let linear = match arguments.free.as_slice() {
+        [] => Linearized::of(&model, &state, verify, &Terminal)?,
+        free => Linearized::trimmed(&model, free, state.cyclic, verify, &Terminal)?,
+    };
     match (&file, arguments.format) {
         (Some(file), _) => Ok(linear.write(file)?),
         (None, Some(MatrixFormat::Text) | None) => print(|out| write!(out, "{}", visible(&linear.text()))),

@@ -17,12 +17,20 @@ use pc_run::motion::verification::vouched;
 /// # Errors
 /// [`CliError`].
 pub fn command(arguments: &TheoryArguments) -> Result<(), CliError> {
+    if !arguments.canonical.len().is_multiple_of(2) {
+        return Err(CliError::NotInPairs);
+    }
     let model = input::open(&arguments.model)?;
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     say_dropped(&assembly, &Terminal);
     say_moved(&assembly, &Terminal);
-    let options = TheoryOptions { degree: arguments.degree, functions: arguments.functions.clone() };
+    let canonical = arguments.canonical.iter().map(|new| (new.name.clone(), new.value.clone()));
+    let options = TheoryOptions {
+        degree: arguments.degree,
+        functions: arguments.functions.clone(),
+        canonical: canonical.collect(),
+    };
     let page = Theory::of(&model, &assembly, &options)?.printed(arguments.format.into());
     if !arguments.verify.no_verify {
         vouched(&model, &assembly, Outlet::Equations(Variables::QuasiVelocities), &Terminal)?;

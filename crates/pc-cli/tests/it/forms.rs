@@ -29,6 +29,9 @@ fn forms_are_printed_under_their_names() {
         ("lie-poisson", "", "Lie–Poisson equations", "  p_ω' = -a p_v p_ω/(J + m a²)\n"),
         ("orthonormal", "", "Poincaré's equations in an orthonormal frame", "  diag(1, 1)\n"),
         ("hamel", "p=v+2*ω", "Hamel's equations", "Quasi-velocities\n  p = v + 2 ω\n"),
+        ("maggi", "", "Maggi's equations", "  E_X cos(φ) + E_Y sin(φ) = 0\n  E_φ                     = 0\n"),
+        ("kane", "", "Kane's equations", "  F*(v) = m a ω² - m v'\n"),
+        ("gibbs-appell", "", "Gibbs–Appell's equations", "  m a v ω + ω' (J + m a²) = 0\n"),
     ] {
         let mut arguments = vec!["derive", sleigh, "--form", form];
         arguments.extend((!more.is_empty()).then_some(more));
@@ -45,6 +48,27 @@ fn forms_are_printed_under_their_names() {
         }
         assert_eq!(object["quasi_velocities"].as_array().map(Vec::len), Some(2));
     }
+}
+
+/// The coefficients c_ji^r of (35), in the brackets of ∂/∂x_i + α_ri ∂/∂x_r; those with time are c_0i^r. In the frame of the
+/// constraint the same bracket is found from the operators alone.
+#[test]
+fn coefficients_of_voronets_are_printed() {
+    let bracket = |text: String, head: &str| -> Option<String> {
+        Some(text.lines().find_map(|line| line.trim().strip_prefix(head))?.to_owned())
+    };
+    let found = bracket(said(&["derive", "voronets", "--form", "voronets"]), "[x', y'] = ");
+    let in_frame = bracket(said(&["derive", "voronets"]), "[vx, vy] = ");
+    assert_eq!(found.as_deref(), Some("(x A - x z² + z - 1) z'"));
+    assert_eq!(in_frame.map(|right| right.replace("slip", "z'")), found);
+    let object = said(&["derive", "voronets-rheonomic", "--form", "voronets", "--format", "json"]);
+    let object: serde_json::Value = serde_json::from_str(&object).expect("JSON");
+    let structure = object["structure_coefficients"].as_array().expect("a list");
+    let indices: Vec<String> =
+        structure.iter().map(|c| format!("{} {} {}", c["r"], c["s"], c["m"]).replace('"', "")).collect();
+    assert_eq!(indices, ["0 x' z'", "0 y' z'", "x' y' z'"]);
+    let page = said(&["derive", "voronets", "--form", "voronets", "--format", "latex"]);
+    assert!(page.contains("[X_{\\dot{x}}, X_{\\dot{y}}]"), "{page}");
 }
 
 /// All forms have the columns of the model, except the coordinates that a reduced form lacks; each
@@ -89,6 +113,7 @@ fn source_is_written_in_forms_and_without_a_jacobian() {
         (&["--form", "reduced"][..], "y[0]  v\n"),
         (&["--form", "orthonormal"], "y[3]  η1\n"),
         (&["--form", "hamel", "p=v+2*ω", "--no-jacobian"], "y[3]  p\n"),
+        (&["--form", "voronets"], "y[3]  X'\n"),
     ] {
         said(&[&["emit", "chaplygin-sleigh", "--lang", "c", "-o", path], more].concat());
         let files = std::fs::read_dir(path).expect("a directory").flatten();
@@ -114,7 +139,19 @@ fn senseless_requests_are_refused() {
         4,
         "`r` is one quasi-velocity too many",
     );
-    refused(&["run", sleigh, "--form", "voronets"], 2, "not supported yet");
+    refused(&["run", sleigh, "--form", "maggi"], 2, "not supported yet");
+    refused(&["run", "vertical-disk", "--form", "voronets"], 4, "choose these with --independent");
+    refused(
+        &["derive", "appell-hamel", "--form", "kane"],
+        4,
+        "Kane's equations need constraints that are affine",
+    );
+    refused(&["derive", "suslov", "--form", "maggi"], 4, "Lagrange's equations need independent coordinates");
+    refused(
+        &["derive", sleigh, "--form", "canonical", "--reactions"],
+        2,
+        "has no reactions in its variables",
+    );
     refused(
         &["emit", sleigh, "--lang", "c", "-o", "/nowhere", "--form", "canonical"],
         2,
@@ -124,6 +161,94 @@ fn senseless_requests_are_refused() {
     refused(&["derive", "vertical-disk", "--independent", "φ'"], 4, "cannot be the independent");
     refused(&["derive", sleigh, "--independent", "v"], 4, "cannot be the independent");
     refused(&["derive", "relativistic-particle", "--form", "orthonormal"], 4, "L is not quadratic");
+}
+
+/// Gibbs' function of the sleigh is ½ m |a|² + ½ J ω̇² with the acceleration (v̇ − aω², vω + aω̇) of its mass centre.
+#[test]
+fn the_energy_of_accelerations_is_printed() {
+    let text = said(&["derive", "chaplygin-sleigh", "--form", "gibbs-appell"]);
+    let function = "Gibbs' function\n  m a v ω ω' - m a ω² v' + ½ m v'² + ½ ω'² (m a² + J)\n";
+    assert!(text.contains(function), "{text}");
+    assert!(text.contains("  (Terms without accelerations are left out: they do not matter.)\n"), "{text}");
+    assert!(!text.contains("Brackets"), "{text}");
+    let page = said(&["derive", "chaplygin-sleigh", "--form", "kane", "--format", "latex"]);
+    for formula in ["\\frac{\\partial \\dot{X}}{\\partial v} &= \\cos \\varphi", "F^{*}_{v} &= "] {
+        assert!(page.contains(formula), "{page}");
+    }
+    let object = said(&["derive", "chaplygin-sleigh", "--form", "kane", "--format", "json"]);
+    let object: serde_json::Value = serde_json::from_str(&object).expect("JSON");
+    assert_eq!(object["active_forces"], serde_json::json!(["0", "0"]));
+    assert_eq!(object["inertia_forces"][0], "m*a*ω^2 - m*v'");
+}
+
+/// A heavy particle on a sphere of radius l about the origin.
+const SPHERE: &str = r#"
+[parameters]
+m = 2.0
+g = 9.81
+l = 1.5
+[coordinates]
+x = 0.9
+y = 0.0
+z = -1.2
+[quasi_velocities]
+"x'" = 0.0
+"y'" = 2.0
+"z'" = 0.0
+[constraints]
+sphere = "x^2 + y^2 + z^2 - l^2"
+[lagrangian]
+kinetic = "m*(x'^2 + y'^2 + z'^2)/2"
+potential = "m*g*z"
+[simulation]
+t_end = 1.0
+"#;
+
+/// λ = m (g z − |ṙ|²)/(2 r²) [Lagrange's first kind], as a formula and as the numbers of a run.
+#[test]
+fn reactions_of_position_constraints_are_formulas() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let path = directory.path().join("sphere.toml");
+    std::fs::write(&path, SPHERE).expect("written");
+    let model = path.to_str().expect("UTF-8");
+    let object = said(&["derive", model, "--form", "lagrange", "--reactions", "--format", "json"]);
+    let object: serde_json::Value = serde_json::from_str(&object).expect("JSON");
+    assert_eq!(object["reaction_forces"]["z'"], "2*z*λ_sphere");
+    let written = object["reactions"]["λ_sphere"].as_str().expect("a formula").to_owned();
+
+    let table = said(&["run", model, "--samples", "2", "--outputs", "reactions"]);
+    let row: std::collections::BTreeMap<String, String> = last_row(&table).into_iter().collect();
+    let of = |name: &str| row[name].parse::<f64>().expect("a number");
+    let squares = |names: [&str; 3]| names.map(|name| of(name).powi(2)).iter().sum::<f64>();
+    let (speed, radius) = (squares(["x'", "y'", "z'"]), squares(["x", "y", "z"]));
+    let expected = 2.0 * (9.81 * of("z") - speed) / (2.0 * radius);
+    assert!((of("λ_sphere") - expected).abs() < 1e-9 * expected.abs(), "{row:?}");
+
+    assert_eq!(written, "m*(g*z - x'^2 - y'^2 - z'^2)/(2*(x^2 + y^2 + z^2))");
+
+    // In independent velocities, and by every principle, each compared with the second derivation.
+    for form in ["poincare", "voronets", "maggi", "kane", "gibbs-appell"] {
+        let text = said(&["derive", model, "--form", form, "--reactions"]);
+        assert!(text.contains("\nReactions\n  λ_sphere = "), "{text}");
+        assert!(text.contains("\nReaction forces\n"), "{text}");
+    }
+}
+
+/// Voronets' and Chaplygin's equations have the motion of the model's own, in each model that has them.
+#[test]
+fn voronets_equations_have_the_same_motion() {
+    for model in ["chaplygin-sleigh", "tilted-disk", "snakeboard", "voronets", "charged-particle"] {
+        let run = |form: &str| {
+            let end = ["--t-end", "0.5", "--samples", "2", "--rtol", "1e-11", "--form", form];
+            last_row(&said(&[&["run", model][..], &end].concat()))
+        };
+        for ((name, own), (other, value)) in run("poincare").iter().zip(run("voronets")) {
+            let number = |text: &str| text.parse::<f64>().expect("a number");
+            let (own, value) = (number(own), number(&value));
+            assert_eq!(*name, other, "{model}");
+            assert!((own - value).abs() < 1e-7 * (1.0 + own.abs()), "{model}: {name} is {value}, not {own}");
+        }
+    }
 }
 
 /// A planet whose file gives the velocities along and across the radius as quasi-velocities.
@@ -300,4 +425,17 @@ fn a_model_that_is_wrong_only_as_it_is_has_columns() {
     assert_eq!(last_row(&table)[3..3 + run.len()], run);
     assert_eq!(run[1].0, "r");
     assert_eq!(run[2].0, "r'", "nothing depends on φ");
+}
+
+/// [X_1, X_2] = X_3 on the rotations, and what the blade of a sleigh forbids.
+#[test]
+fn brackets_are_printed_as_symbols_of_boltzmann_and_hamel() {
+    let text = said(&["derive", "euler-top", "--symbols"]);
+    let top =
+        "Symbols of Boltzmann and Hamel\n  γ(ω1, ω2; ω3) = 1\n  γ(ω1, ω3; ω2) = -1\n  γ(ω2, ω3; ω1) = 1\n";
+    assert!(text.contains(top), "{text}");
+    let text = said(&["derive", "chaplygin-sleigh", "--symbols", "--format", "latex"]);
+    assert!(text.contains("\\gamma_{v \\omega}^{\\mathrm{blade}} &= -1"), "{text}");
+    let text = said(&["derive", "double-pendulum-links", "--symbols"]);
+    assert!(text.contains("Brackets\n"), "no symbols where all brackets are zero: {text}");
 }

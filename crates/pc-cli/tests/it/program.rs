@@ -249,7 +249,7 @@ fn wrong_usage_is_exit_2_and_suggests_a_correction() {
     refuses(&["run", "euler-top", "--atol", "NaN"], 2, "finite");
     refuses(&["run", "euler-top", "--t-end", "0"], 2, "nothing to integrate");
     refuses(&["run", "euler-top", "--method", "rk4"], 2, "dop853, taylor or auto");
-    refuses(&["run", "euler-top", "--form", "voronets"], 2, "not supported yet");
+    refuses(&["run", "euler-top", "--form", "maggi"], 2, "not supported yet");
     refuses(&["derive", "euler-top", "--format", "html"], 2, "possible values: text, latex, json");
     refuses(&["sweep", "euler-top"], 2, "sweep");
     refuses(&["run", "euler-top", "-o", "motion.xlsx"], 2, ".csv, .json, .npz or .parquet");

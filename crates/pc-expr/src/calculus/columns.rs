@@ -50,6 +50,11 @@ impl Columns<'_> {
                 let args = Dag::args(function, &args).iter();
                 function.name().len() + args.map(|&arg| self.of(arg, depth - 1) + 2).sum::<usize>()
             }
+            Node::Applied { function, args } => {
+                let name = function.text(dag.function_name(function), &[]).chars().count();
+                let args = function.args(&args).iter();
+                name + args.map(|&arg| self.of(arg, depth - 1) + 2).sum::<usize>()
+            }
             Node::Product { factors } => {
                 let factor = |&(node, e): &(NodeId, i32)| {
                     let brackets = if is_sum(node) { 2 } else { 0 };

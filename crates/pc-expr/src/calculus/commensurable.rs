@@ -63,7 +63,7 @@ impl Dag {
                 | Function::Exp
                 | Function::Log => vec![one, argument(args[0])],
             },
-            Node::Constant(_) | Node::Symbol(_) | Node::Product { .. } => Vec::new(),
+            Node::Constant(_) | Node::Symbol(_) | Node::Product { .. } | Node::Applied { .. } => Vec::new(),
         }
     }
 }

@@ -119,6 +119,7 @@ impl Dag {
         use Function::{Abs, Atan, Cos, Max, Min, Sign, Sin, Step, Tanh};
         let is_bounded = |&node: &NodeId| match self.node(node) {
             Node::Constant(_) | Node::Symbol(_) | Node::Sum { .. } => true,
+            Node::Applied { .. } => false,
             Node::Product { factors } => self.factors(factors).iter().all(|&(_, e)| e > 0),
             Node::Call { function, .. } => {
                 matches!(function, Sin | Cos | Tanh | Atan | Abs | Sign | Min | Max | Step)
@@ -179,6 +180,17 @@ impl Dag {
                     rest[i].1 -= 1;
                     let partial = self.product(Number::ONE, &rest);
                     visit(self, child, partial, Number::integer(e));
+                }
+            }
+            Node::Applied { function, args } => {
+                let args = function.args(&args);
+                let atoms: Vec<Atom> = args.iter().map(|&arg| self.constant_of(Atom::Node(arg))).collect();
+                for (position, &arg) in args.iter().enumerate() {
+                    let partial = match function.differentiated(position) {
+                        Some(derivative) => self.applied(derivative, &atoms),
+                        None => Atom::Constant(Number::UNDEFINED),
+                    };
+                    visit(self, arg, partial, Number::ONE);
                 }
             }
             Node::Call { function, args } => {

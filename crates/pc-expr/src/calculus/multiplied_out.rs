@@ -66,6 +66,14 @@ impl Dag {
                 let args: Vec<Atom> = args.iter().map(|arg| merged[arg]).collect();
                 self.call(function, &args)
             }
+            Node::Applied { function, args } => {
+                let args = function.args(&args);
+                if args.iter().all(same) {
+                    return Atom::Node(node);
+                }
+                let args: Vec<Atom> = args.iter().map(|arg| merged[arg]).collect();
+                self.applied(function, &args)
+            }
             Node::Product { factors } => {
                 let factors = self.factors(factors).to_vec();
                 if factors.iter().all(|(factor, _)| same(factor)) {

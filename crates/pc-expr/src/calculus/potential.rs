@@ -110,7 +110,9 @@ impl Graph {
                 }
                 products
             }
-            Node::Constant(_) | Node::Symbol(_) | Node::Call { .. } => vec![vec![(f, 1)]],
+            Node::Constant(_) | Node::Symbol(_) | Node::Call { .. } | Node::Applied { .. } => {
+                vec![vec![(f, 1)]]
+            }
         };
         (products.len() <= MOST_PRODUCTS).then_some(products)
     }

@@ -66,7 +66,7 @@ impl Dag {
     fn powers(&mut self, symbol: NodeId, output: Atom) -> Powers {
         let cone = Cone::below(self, [output]);
         let active = cone.depending_on(self, &[symbol]);
-        if active.iter().any(|&node| matches!(self.node(node), Node::Call { .. })) {
+        if active.iter().any(|&node| matches!(self.node(node), Node::Call { .. } | Node::Applied { .. })) {
             return Powers::BelowACall;
         }
         let mut known: FxHashMap<NodeId, Vec<Atom>> = FxHashMap::default();

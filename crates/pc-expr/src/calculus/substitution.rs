@@ -9,6 +9,7 @@ use crate::graph::node::{Atom, Folding, Node, NodeId};
 use crate::graph::number::Number;
 use crate::graph::places::SymbolPlaces;
 use crate::graph::subgraph::{Assignment, Cone};
+use crate::graph::transcription::Transcription;
 
 /// Symbols with their replacements. The cost of applying the list to an expression depends only on the size
 /// of that expression, however long the list is.
@@ -103,6 +104,11 @@ impl Graph {
 
     /// The expressions rebuilt in another graph, from symbols with the same names.
     pub fn transcribe<'g, 'h>(&'g self, expressions: &[Expr<'g>], into: &'h Graph) -> Vec<Expr<'h>> {
+        if !self.undetermined_in(expressions).is_empty() {
+            // A function of numbers, V(0), has no graph but that into which it is written.
+            let copy = Transcription::new(self, into);
+            return expressions.iter().map(|&expression| copy.write(expression)).collect();
+        }
         let symbols: Vec<(Expr<'g>, Expr<'h>)> = self
             .symbols_of(expressions)
             .into_iter()
@@ -148,6 +154,14 @@ impl Dag {
                         .map(|&child| self.constant_of(values.node(child)))
                         .collect();
                     self.call(function, &args)
+                }
+                Node::Applied { function, args } => {
+                    let args: Vec<Atom> = function
+                        .args(&args)
+                        .iter()
+                        .map(|&child| self.constant_of(values.node(child)))
+                        .collect();
+                    self.applied(function, &args)
                 }
             };
             values.set(node, value);

@@ -54,6 +54,10 @@ impl Graph {
                                 false => paper.call(function, &args),
                             }
                         }
+                        Node::Applied { function, args } => {
+                            let args: Vec<Atom> = function.args(&args).iter().map(|arg| set[arg]).collect();
+                            paper.applied_as(dag, function, &args)
+                        }
                         Node::Product { factors } => {
                             let powers: Vec<(Atom, i32)> =
                                 dag.factors(factors).iter().map(|&(n, e)| (set[&n], e)).collect();
@@ -319,7 +323,9 @@ impl Dag {
     /// The sum with some terms collected in brackets: those that share the function or sum that is a factor
     /// of most terms.
     fn in_groups(&mut self, constant: Number, terms: &[Term]) -> Option<Atom> {
-        let is_long = |node: NodeId| matches!(self.node(node), Node::Call { .. } | Node::Sum { .. });
+        let is_long = |node: NodeId| {
+            matches!(self.node(node), Node::Call { .. } | Node::Applied { .. } | Node::Sum { .. })
+        };
         let has = |term: &Term, node: NodeId| term.factors.iter().any(|&(factor, e)| factor == node && e > 0);
         let mut best: Option<(usize, NodeId)> = None;
         for &(node, _) in

@@ -91,7 +91,7 @@ impl Dag {
         }
     }
 
-    fn argument(&mut self, atom: Atom) -> NodeId {
+    pub(super) fn argument(&mut self, atom: Atom) -> NodeId {
         match atom {
             Atom::Constant(c) => {
                 let candidate = Candidate::Constant(c);

@@ -12,6 +12,7 @@ use crate::graph::divisors::{DivisorSets, Divisors};
 use crate::graph::function::Function;
 use crate::graph::node::{Atom, Candidate, Folding, Node, NodeId, Slice, hash_of};
 use crate::graph::number::Number;
+use crate::graph::undetermined::Undetermined;
 use crate::identity::fingerprint::Fingerprint;
 use crate::identity::roots::{Roots, Terms, Value};
 
@@ -51,6 +52,8 @@ pub(crate) struct Dag {
     terms: Vec<(NodeId, Number)>,
     factors: Vec<(NodeId, i32)>,
     names: Vec<String>,
+    /// The names of undetermined functions.
+    functions: Vec<String>,
     by_structure: HashTable<NodeId>,
     pub(super) by_value: HashTable<NodeId>,
     /// The numerators of all divisions by zero so far.
@@ -87,6 +90,7 @@ impl Dag {
             terms: Vec::new(),
             factors: Vec::new(),
             names: Vec::new(),
+            functions: Vec::new(),
             by_structure: HashTable::new(),
             by_value: HashTable::new(),
             zero_divisions: Vec::new(),
@@ -138,6 +142,26 @@ impl Dag {
         &self.names[index as usize]
     }
 
+    /// The index of the undetermined function with that name, listed if it is new.
+    pub(crate) fn function(&mut self, name: &str) -> u32 {
+        let known = self.functions.iter().position(|function| function == name);
+        let place = known.unwrap_or_else(|| {
+            self.functions.push(name.to_owned());
+            self.functions.len() - 1
+        });
+        place as u32
+    }
+
+    /// Whether there are undetermined functions.
+    pub(crate) fn has_functions(&self) -> bool {
+        !self.functions.is_empty()
+    }
+
+    /// The name of an undetermined function, without the orders of differentiation.
+    pub(crate) fn function_name(&self, function: Undetermined) -> &str {
+        &self.functions[function.name as usize]
+    }
+
     pub(crate) fn zero_divisions(&self) -> &[Atom] {
         &self.zero_divisions
     }
@@ -159,6 +183,7 @@ impl Dag {
             Node::Sum { terms, .. } => self.terms(terms).iter().for_each(|&(n, _)| visit(n)),
             Node::Product { factors } => self.factors(factors).iter().for_each(|&(n, _)| visit(n)),
             Node::Call { function, args } => Dag::args(function, &args).iter().for_each(|&n| visit(n)),
+            Node::Applied { function, args } => function.args(&args).iter().for_each(|&n| visit(n)),
         }
     }
 
@@ -311,6 +336,7 @@ impl Dag {
             }
             (Node::Product { factors }, Candidate::Product(f)) => self.factors(factors) == *f,
             (Node::Call { function, args }, Candidate::Call(f, a)) => function == *f && args == *a,
+            (Node::Applied { function, args }, Candidate::Applied(f, a)) => function == *f && args == *a,
             _ => false,
         }
     }
@@ -336,6 +362,7 @@ impl Dag {
                 Node::Product { factors: Slice { start, len: factors.len() as u32 } }
             }
             Candidate::Call(function, args) => Node::Call { function, args },
+            Candidate::Applied(function, args) => Node::Applied { function, args },
         };
         let operands = match node {
             Node::Sum { terms: slice, .. } | Node::Product { factors: slice } => slice.range().len(),
@@ -365,6 +392,7 @@ impl Dag {
                 Node::Sum { constant, terms } => Candidate::Sum(constant, &term_pool[terms.range()]),
                 Node::Product { factors } => Candidate::Product(&factor_pool[factors.range()]),
                 Node::Call { function, args } => Candidate::Call(function, args),
+                Node::Applied { function, args } => Candidate::Applied(function, args),
             }
             .hash()
         });
@@ -388,6 +416,9 @@ impl Dag {
             Candidate::Product(factors) => factors.iter().fold(0, |bits, &(node, _)| with(bits, node)),
             Candidate::Call(function, args) => {
                 Dag::args(function, &args).iter().fold(0, |bits, &node| with(bits, node))
+            }
+            Candidate::Applied(function, args) => {
+                function.args(&args).iter().fold(0, |bits, &node| with(bits, node))
             }
         }
     }
@@ -413,6 +444,9 @@ impl Dag {
             }
             Candidate::Call(function, args) => {
                 sum(&mut Dag::args(function, &args).iter().map(|&n| self.cost(n))).saturating_add(10)
+            }
+            Candidate::Applied(function, args) => {
+                sum(&mut function.args(&args).iter().map(|&n| self.cost(n))).saturating_add(10)
             }
         }
     }

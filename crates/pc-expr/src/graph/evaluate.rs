@@ -12,6 +12,7 @@ use crate::graph::function::Function;
 use crate::graph::graph::Graph;
 use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::number::Number;
+use crate::graph::stand_in::StandIn;
 use crate::graph::subgraph::Cone;
 
 /// A type of number with which expressions can be evaluated: `f64`, or a dual number.
@@ -27,6 +28,34 @@ pub trait Scalar: Copy + Add<Output = Self> + Mul<Output = Self> + Neg<Output = 
     fn powi(self, exponent: i32) -> Self;
     /// The value of the function at `args`, which has one entry for each of its arguments.
     fn call(function: Function, args: &[Self]) -> Self;
+    /// The value of an undetermined function, differentiated as often with respect to each argument as
+    /// `orders` says: that of its [stand-in](StandIn).
+    fn undetermined(name: &str, orders: &[u8], args: &[Self]) -> Self {
+        StandIn::new(name, args.len()).value(orders, args)
+    }
+}
+
+impl StandIn {
+    /// The value at `args` of the function differentiated as often with respect to each argument as `orders`
+    /// says.
+    pub fn value<S: Scalar>(&self, orders: &[u8], args: &[S]) -> S {
+        let order: u32 = orders.iter().map(|&order| u32::from(order)).sum();
+        let level = if order == 0 { StandIn::LEVEL } else { 0.0 };
+        self.waves.iter().fold(S::from_f64(level), |sum, wave| {
+            let angle = wave
+                .frequencies
+                .iter()
+                .zip(args)
+                .fold(S::from_f64(wave.phase), |angle, (&frequency, &arg)| {
+                    angle + S::from_f64(frequency) * arg
+                });
+            let factors = wave.frequencies.iter().zip(orders);
+            let size = factors.fold(wave.amplitude, |size, (f, &order)| size * f.powi(order.into()));
+            let function = if order.is_multiple_of(2) { Function::Sin } else { Function::Cos };
+            let size = if order % 4 < 2 { size } else { -size };
+            sum + S::from_f64(size) * S::call(function, &[angle])
+        })
+    }
 }
 
 impl Scalar for f64 {
@@ -54,6 +83,13 @@ impl<'h> Scalar for Expr<'h> {
     fn call(function: Function, args: &[Expr<'h>]) -> Expr<'h> {
         Expr::apply(function, args)
     }
+    /// The function itself, as long as one of the arguments belongs to a graph.
+    fn undetermined(name: &str, orders: &[u8], args: &[Expr<'h>]) -> Expr<'h> {
+        match args.iter().find_map(|arg| arg.graph()) {
+            Some(graph) => graph.applied(name, orders, args),
+            None => StandIn::new(name, args.len()).value(orders, args),
+        }
+    }
 }
 
 fn evaluate<S: Scalar>(dag: &Dag, outputs: &[Atom], symbols: &[(NodeId, S)]) -> Result<Vec<S>, ExprError> {
@@ -77,6 +113,10 @@ fn evaluate<S: Scalar>(dag: &Dag, outputs: &[Atom], symbols: &[(NodeId, S)]) -> 
             Node::Call { function, args } => {
                 let args: Vec<S> = Dag::args(function, &args).iter().map(|child| values[child]).collect();
                 S::call(function, &args)
+            }
+            Node::Applied { function, args } => {
+                let args: Vec<S> = function.args(&args).iter().map(|child| values[child]).collect();
+                S::undetermined(dag.function_name(function), function.orders(), &args)
             }
         };
         values.insert(id, value);

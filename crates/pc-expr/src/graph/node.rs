@@ -6,6 +6,7 @@ use rustc_hash::FxHasher;
 
 use crate::graph::function::Function;
 use crate::graph::number::Number;
+use crate::graph::undetermined::Undetermined;
 
 /// Index of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -65,6 +66,11 @@ pub(crate) enum Node {
         function: Function,
         args: [NodeId; 3],
     },
+    /// An undetermined function, or one of its partial derivatives, at its arguments.
+    Applied {
+        function: Undetermined,
+        args: [NodeId; 3],
+    },
 }
 
 /// The description of a node, which may or may not exist yet.
@@ -75,6 +81,7 @@ pub(crate) enum Candidate<'a> {
     Sum(Number, &'a [(NodeId, Number)]),
     Product(&'a [(NodeId, i32)]),
     Call(Function, [NodeId; 3]),
+    Applied(Undetermined, [NodeId; 3]),
 }
 
 impl Candidate<'_> {
@@ -85,6 +92,7 @@ impl Candidate<'_> {
             Candidate::Sum(c, terms) => hash_of(&(2u8, c, terms)),
             Candidate::Product(factors) => hash_of(&(3u8, factors)),
             Candidate::Call(function, args) => hash_of(&(4u8, function, args)),
+            Candidate::Applied(function, args) => hash_of(&(5u8, function, args)),
         }
     }
 }

@@ -167,7 +167,7 @@ impl Graph {
             let cone = Cone::below(dag, roots);
             cone.order.iter().all(|&node| match dag.node(node) {
                 Node::Constant(c) => !rounded(c),
-                Node::Symbol(_) | Node::Product { .. } => true,
+                Node::Symbol(_) | Node::Product { .. } | Node::Applied { .. } => true,
                 Node::Sum { constant, terms } => {
                     !rounded(constant) && dag.terms(terms).iter().all(|&(_, q)| !rounded(q))
                 }

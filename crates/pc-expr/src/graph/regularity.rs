@@ -20,6 +20,9 @@ impl Dag {
         };
         match *candidate {
             Candidate::Constant(_) | Candidate::Symbol(_) => {}
+            Candidate::Applied(function, args) => {
+                function.args(&args).iter().for_each(|&node| add(self, node));
+            }
             Candidate::Sum(_, terms) => terms.iter().for_each(|&(node, _)| add(self, node)),
             Candidate::Call(function, args) => {
                 Dag::args(function, &args).iter().for_each(|&node| add(self, node));
@@ -49,6 +52,9 @@ impl Dag {
         };
         match *candidate {
             Candidate::Constant(_) | Candidate::Symbol(_) => {}
+            Candidate::Applied(function, args) => {
+                function.args(&args).iter().for_each(|&node| add(self, node));
+            }
             Candidate::Sum(_, terms) => terms.iter().for_each(|&(node, _)| add(self, node)),
             Candidate::Product(factors) => factors.iter().for_each(|&(node, _)| add(self, node)),
             Candidate::Call(function, args) => {

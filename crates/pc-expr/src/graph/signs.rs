@@ -20,7 +20,7 @@ impl Dag {
     pub(crate) fn is_candidate_nonnegative(&self, candidate: &Candidate<'_>) -> bool {
         match *candidate {
             Candidate::Constant(c) => !c.is_negative(),
-            Candidate::Symbol(_) => false,
+            Candidate::Symbol(_) | Candidate::Applied(..) => false,
             Candidate::Sum(constant, terms) => self.is_sum_nonnegative(constant, terms.iter().copied()),
             Candidate::Product(factors) => {
                 factors.iter().all(|&(node, e)| e % 2 == 0 || self.is_nonnegative(node))

@@ -88,6 +88,10 @@ fn written_node(source: &Dag, target: &mut Dag, node: NodeId, written: &FxHashMa
                 false => target.call(function, &args),
             }
         }
+        Node::Applied { function, args } => {
+            let args: Vec<Atom> = function.args(&args).iter().map(|arg| written[arg]).collect();
+            target.applied_as(source, function, &args)
+        }
         Node::Product { factors } => {
             let factors = source.factors(factors).iter();
             let powers: Vec<Atom> = factors.map(|(n, e)| target.powi(written[n], *e)).collect();

@@ -2,7 +2,7 @@
 
 use crate::graph::dag::Dag;
 use crate::graph::function::{Function, Parity};
-use crate::graph::node::{Candidate, Node, NodeId};
+use crate::graph::node::{Candidate, Node, NodeId, hash_of};
 use crate::graph::number::Number;
 use crate::identity::circle_point::CirclePoint;
 use crate::identity::fingerprint::Fingerprint;
@@ -33,6 +33,7 @@ struct PowerProduct {
 
 const SALT_CIRCLE: u64 = 0x5ca1_ab1e;
 const SALT_EXP: u64 = 0xe4b0_4e47;
+const SALT_APPLIED: u64 = 0x0f0f_2b1d;
 const SALT_ORDER: u64 = 0x0bde_500f;
 /// The largest denominator of an exponent that still counts as the order of a root.
 const MAX_ORDER: i64 = 1000;
@@ -76,6 +77,11 @@ impl Dag {
                 product
             }
             Candidate::Call(function, args) => self.call_value(function, Dag::args(function, &args)),
+            Candidate::Applied(function, args) => {
+                let key = hash_of(&(SALT_APPLIED, self.function_name(function), function.orders()));
+                let key = function.args(&args).iter().fold(key, |key, &arg| self.fingerprint(arg).key(key));
+                Fingerprint::random(key).into()
+            }
         }
     }
 

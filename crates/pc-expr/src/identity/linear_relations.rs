@@ -4,15 +4,12 @@
 //! the a_j. Points are added until two in a row add no equation; the null space is then read back as fractions. The
 //! result is a proposal: only relations that the graph itself folds to zero are returned.
 
-use rustc_hash::FxHashMap;
-
 use crate::graph::expr::Expr;
 use crate::graph::graph::Graph;
-use crate::graph::node::{Atom, Folding, Node, NodeId};
 use crate::graph::number::Number;
-use crate::graph::subgraph::Cone;
 use crate::identity::echelon::ResidueEchelon;
 use crate::identity::prime_field::Residue;
+use crate::identity::sampler::Sampler;
 
 /// This many points in a row without a new equation end the search.
 const IDLE_POINTS: usize = 2;
@@ -26,7 +23,7 @@ impl Graph {
     /// ascending order: simple columns should come first.
     ///
     /// Every relation is certified: Σ_j a_j f_ji folds to zero for each i, so that few are found with
-    /// [`Folding::Structural`]. Some relations are missed: those whose coefficients, divided by the last,
+    /// [`Folding::Structural`](crate::Folding::Structural). Some relations are missed: those whose coefficients, divided by the last,
     /// are not rational or are p/q with p·q beyond about 2⁵⁰; those blurred by constants beyond the range of
     /// exact [`Number`]s; and those that fingerprints cannot see, such as relations between logarithms.
     ///
@@ -88,124 +85,41 @@ impl Graph {
     }
 
     /// The values of the columns at random points, until further points add no equation.
-    fn echelon<'g>(&'g self, columns: &[Vec<Expr<'g>>], constants: &[Expr<'g>]) -> ResidueEchelon {
+    pub(super) fn echelon<'g>(&'g self, columns: &[Vec<Expr<'g>>], constants: &[Expr<'g>]) -> ResidueEchelon {
         let components = columns.first().map_or(0, Vec::len);
         assert!(columns.iter().all(|column| column.len() == components), "columns of one length");
         let sampler = Sampler::new(self, &columns.concat(), constants);
-        let mut echelon = ResidueEchelon::new(columns.len());
-        let mut idle = 0;
-        for point in 0.. {
-            let values = sampler.at(point);
-            let rank = echelon.rank();
-            for i in 0..components {
-                echelon.insert((0..columns.len()).map(|j| values[j * components + i]).collect());
-            }
-            idle = if echelon.rank() > rank { 0 } else { idle + 1 };
-            if idle == IDLE_POINTS {
-                break;
-            }
+        equations(&sampler, columns.len(), components, &[])
+    }
+}
+
+/// The equations for the coefficients of `columns` columns at these places of the constants: points are added until
+/// two in a row add none.
+pub(super) fn equations(
+    sampler: &Sampler<'_>,
+    columns: usize,
+    components: usize,
+    places: &[usize],
+) -> ResidueEchelon {
+    let mut echelon = ResidueEchelon::new(columns);
+    let mut idle = 0;
+    for point in 0.. {
+        let values = sampler.at(point, places);
+        let rank = echelon.rank();
+        for i in 0..components {
+            echelon.insert((0..columns).map(|j| values[j * components + i]).collect());
         }
-        echelon
+        idle = if echelon.rank() > rank { 0 } else { idle + 1 };
+        if idle == IDLE_POINTS {
+            break;
+        }
     }
-}
-
-/// Expressions to be evaluated in GF(2⁶¹ − 1) at any number of points.
-///
-/// The fingerprint of a symbol depends on its name, so another set of names gives another point. Sums and
-/// products are evaluated in the field; calls are written once more, with the other names, in a graph that
-/// is then discarded.
-struct Sampler<'g> {
-    graph: &'g Graph,
-    outputs: Vec<Atom>,
-    cone: Cone,
-    symbols: Vec<Expr<'g>>,
-    /// Symbols that have the same value at all points.
-    constants: Vec<Expr<'g>>,
-    calls: Vec<Expr<'g>>,
-}
-
-impl<'g> Sampler<'g> {
-    fn new(graph: &'g Graph, outputs: &[Expr<'g>], constants: &[Expr<'g>]) -> Sampler<'g> {
-        let symbols = graph.symbols_of(outputs);
-        let outputs: Vec<Atom> = outputs.iter().map(|x| x.atom_in(graph)).collect();
-        let cone = graph.with(|dag| Cone::below(dag, outputs.iter().copied()));
-        // Roots keep their laws in a graph only: where there are any, every node is written once more.
-        let rooted = graph.with(|dag| cone.order.iter().any(|&id| !dag.is_plain(id)));
-        let called = |&&id: &&NodeId| rooted || graph.with(|dag| matches!(dag.node(id), Node::Call { .. }));
-        let calls = cone.order.iter().filter(called).map(|&id| graph.expr(Atom::Node(id))).collect();
-        Sampler { graph, outputs, cone, symbols, constants: constants.to_vec(), calls }
-    }
-
-    /// The values at point number `point`.
-    fn at(&self, point: usize) -> Vec<Residue> {
-        let mut values = self.unknowns(point);
-        self.graph.with(|dag| {
-            let of = |values: &FxHashMap<NodeId, Residue>, id: &NodeId| {
-                values.get(id).copied().unwrap_or_default()
-            };
-            for &id in &self.cone.order {
-                if values.contains_key(&id) {
-                    continue;
-                }
-                let value = match dag.node(id) {
-                    Node::Constant(c) => constant(c),
-                    Node::Symbol(_) | Node::Call { .. } => continue,
-                    Node::Sum { constant: c, terms } => dag
-                        .terms(terms)
-                        .iter()
-                        .fold(constant(c), |sum, (child, q)| sum + constant(*q) * of(&values, child)),
-                    Node::Product { factors } => dag
-                        .factors(factors)
-                        .iter()
-                        .fold(Residue::ONE, |product, (child, e)| product * of(&values, child).powi(*e)),
-                };
-                values.insert(id, value);
-            }
-            let output = |atom: &Atom| match atom {
-                Atom::Constant(c) => constant(*c),
-                Atom::Node(id) => of(&values, id),
-            };
-            self.outputs.iter().map(output).collect()
-        })
-    }
-
-    /// The values of symbols and calls.
-    fn unknowns(&self, point: usize) -> FxHashMap<NodeId, Residue> {
-        let page = Graph::with_folding(Folding::Structural);
-        let renamed = |symbol: &Expr<'g>| match self.constants.contains(symbol) {
-            true => page.symbol(&symbol.to_string()),
-            false => page.symbol(&format!("{symbol}@{point}")),
-        };
-        let renamed: Vec<_> = self.symbols.iter().map(|symbol| (*symbol, renamed(symbol))).collect();
-        // Every symbol below a call is in the list, so all are bound.
-        let calls = self.graph.evaluate(&self.calls, &renamed).unwrap_or_default();
-        let calls = self.calls.iter().copied().zip(calls);
-        renamed
-            .iter()
-            .copied()
-            .chain(calls)
-            .filter_map(|(original, image)| match original.atom() {
-                Atom::Node(id) => Some((id, value(&page, image))),
-                Atom::Constant(_) => None,
-            })
-            .collect()
-    }
-}
-
-fn constant(c: Number) -> Residue {
-    c.fingerprint().first()
-}
-
-fn value(graph: &Graph, expression: Expr<'_>) -> Residue {
-    match expression.atom() {
-        Atom::Constant(c) => constant(c),
-        Atom::Node(id) => graph.with(|dag| dag.fingerprint(id).first()),
-    }
+    echelon
 }
 
 /// The fraction p/q = x with the smallest p·q, by maximal quotient rational reconstruction (M. Monagan,
 /// ISSAC 2004): in Euclid's algorithm for 2⁶¹ − 1 and x, p and q precede the largest quotient.
-fn fraction(x: Residue) -> Number {
+pub(super) fn fraction(x: Residue) -> Number {
     let (mut r0, mut r1) = ((-Residue::<1>::ONE).to_bits() + 1, x.to_bits());
     let (mut s0, mut s1) = (0i64, 1i64);
     let (mut largest, mut found) = (0, Number::ZERO);
@@ -222,7 +136,7 @@ fn fraction(x: Residue) -> Number {
 
 /// The vector with denominators and common factors removed, as far as its entries stay exact; the first entry
 /// is positive.
-fn whole(vector: &[Number]) -> Vec<Number> {
+pub(super) fn whole(vector: &[Number]) -> Vec<Number> {
     let mut entries = vector.iter().copied().filter(|a| !a.is_zero());
     let Some(first) = entries.next() else { return vector.to_vec() };
     let common = entries.try_fold(first.abs(), Number::content).unwrap_or(Number::ONE);

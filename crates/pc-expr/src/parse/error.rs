@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::parse::syntax_tree::{MAX_DEPTH, Span};
-use crate::parse::vocabulary::{FUNCTIONS, Function};
+use crate::parse::vocabulary::{Declared, FUNCTIONS, Function};
 
 /// An error in the text of an expression, with its position.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -55,7 +55,7 @@ pub enum ParseErrorKind {
         /// The name that was called.
         name: String,
         /// A function with a similar name.
-        nearest: Option<&'static str>,
+        nearest: Option<String>,
     },
     /// A function's name without arguments.
     #[error("the function `{}` needs its arguments", .0.name)]
@@ -65,6 +65,17 @@ pub enum ParseErrorKind {
     ArgumentCount {
         /// The function called.
         function: Function,
+        /// The number of arguments given.
+        found: usize,
+    },
+    /// A declared function's name without arguments.
+    #[error("the function `{}` needs its arguments", .0.name)]
+    DeclaredNotCalled(Declared),
+    /// A call of a declared function with too few or too many arguments.
+    #[error("`{}` takes {} argument{}, found {found}", .function.name, .function.arguments.len(), plural(.function.arguments.len()))]
+    DeclaredArgumentCount {
+        /// The function called.
+        function: Declared,
         /// The number of arguments given.
         found: usize,
     },
@@ -114,6 +125,10 @@ impl ParseError {
             }
             ParseErrorKind::NotCalled(function) | ParseErrorKind::ArgumentCount { function, .. } => {
                 format!("it is written `{}`", function.usage)
+            }
+            ParseErrorKind::DeclaredNotCalled(function)
+            | ParseErrorKind::DeclaredArgumentCount { function, .. } => {
+                format!("it is written `{}`", function.usage())
             }
             ParseErrorKind::NumberOutOfRange => "the largest number is about 1.8e308".into(),
             ParseErrorKind::TooDeep => "name the inner parts and use their names".into(),

@@ -9,15 +9,36 @@ use winnow::token::{any, one_of, take_while};
 
 use crate::parse::error::{ParseError, ParseErrorKind};
 use crate::parse::syntax_tree::{Ast, AstKind, Factor, MAX_DEPTH, Sign, Span};
-use crate::parse::vocabulary::{FUNCTIONS, Function, OTHER_NAMES, continues_name, nearest, starts_name};
+use crate::parse::vocabulary::{
+    Declared, FUNCTIONS, Function, OTHER_NAMES, continues_name, nearest, starts_name,
+};
 
 /// The syntax tree of one expression.
 ///
 /// # Errors
 /// An error for the first part of the text that cannot belong to an expression, with the span of that part.
 pub fn parse(text: &str) -> Result<Ast, ParseError> {
+    parse_with(text, &[])
+}
+
+/// The syntax tree of one expression that may also call declared functions.
+///
+/// ```
+/// use pc_expr::parse::{AstKind, Declared, parse_with};
+/// let v = Declared { name: "V".to_owned(), arguments: vec!["r".to_owned()] };
+/// let tree = parse_with("V(x)", &[v.clone()])?;
+/// assert!(matches!(tree.kind, AstKind::Call(name, _, _) if name == "V"));
+/// let error = parse_with("V(x, y)", &[v]).unwrap_err();
+/// assert_eq!(format!("{error}; {}", error.help()), "`V` takes 1 argument, found 2; it is written `V(r)`");
+/// # Ok::<(), pc_expr::parse::ParseError>(())
+/// ```
+///
+/// # Errors
+/// As for [`parse`].
+pub fn parse_with(text: &str, declared: &[Declared]) -> Result<Ast, ParseError> {
     let mut parser = Parser {
         text,
+        declared,
         input: LocatingSlice::new(text),
         token: Token::End,
         span: Span { start: 0, end: 0 },
@@ -75,6 +96,7 @@ type Parsed<T = Box<Ast>> = Result<T, Box<ParseError>>;
 
 struct Parser<'i> {
     text: &'i str,
+    declared: &'i [Declared],
     input: Input<'i>,
     /// The next token and its position.
     token: Token<'i>,
@@ -253,8 +275,20 @@ impl<'i> Parser<'i> {
             (Some(function), _) => {
                 Err(Box::new(ParseError { span: name.span, kind: ParseErrorKind::NotCalled(*function) }))
             }
-            (None, Token::Symbol('(')) => Err(Box::new(unknown_function(text, name.span))),
-            (None, _) => Ok(name),
+            (None, next) => {
+                let declared = self.declared.iter().find(|function| function.name == *text);
+                match (declared, next) {
+                    (Some(function), Token::Symbol('(')) => self.declared_call(function, name.span),
+                    (Some(function), _) => {
+                        let kind = ParseErrorKind::DeclaredNotCalled(function.clone());
+                        Err(Box::new(ParseError { span: name.span, kind }))
+                    }
+                    (None, Token::Symbol('(')) => {
+                        Err(Box::new(unknown_function(text, name.span, self.declared)))
+                    }
+                    (None, _) => Ok(name),
+                }
+            }
         }
     }
 
@@ -275,6 +309,18 @@ impl<'i> Parser<'i> {
             }
         };
         Ok(Box::new(Ast { span, kind }))
+    }
+
+    fn declared_call(&mut self, function: &Declared, place: Span) -> Parsed {
+        let open = self.span;
+        let arguments = self.nested(Self::arguments)?;
+        let span = Span { start: place.start, end: self.close(open)? };
+        let found = arguments.len();
+        if found != function.arguments.len() {
+            let kind = ParseErrorKind::DeclaredArgumentCount { function: function.clone(), found };
+            return Err(Box::new(ParseError { span, kind }));
+        }
+        Ok(Box::new(Ast { span, kind: AstKind::Call(function.name.clone(), place, arguments) }))
     }
 
     fn arguments(&mut self) -> Parsed<Vec<Ast>> {
@@ -311,9 +357,11 @@ fn chain<S>(first: Box<Ast>, sign: S, rest: Vec<(S, Ast)>, kind: fn(Vec<(S, Ast)
 }
 
 /// The error for a call of something that is not a function.
-fn unknown_function(name: &str, span: Span) -> ParseError {
+fn unknown_function(name: &str, span: Span, declared: &[Declared]) -> ParseError {
     let other = OTHER_NAMES.iter().find(|(other, _)| *other == name).map(|(_, ours)| *ours);
-    let nearest = other.or_else(|| nearest(name, FUNCTIONS.iter().map(|function| function.name)));
+    let ours = FUNCTIONS.iter().map(|function| function.name);
+    let theirs = declared.iter().map(|function| function.name.as_str());
+    let nearest = other.or_else(|| nearest(name, ours.chain(theirs))).map(str::to_owned);
     let name = excerpt(name, Span { start: 0, end: name.len() });
     ParseError { span, kind: ParseErrorKind::UnknownFunction { name, nearest } }
 }

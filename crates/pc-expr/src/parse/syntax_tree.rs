@@ -40,7 +40,7 @@ pub enum AstKind {
     Negate(Box<Ast>),
     /// `a^b`
     Power(Box<Ast>, Box<Ast>),
-    /// A function of [`FUNCTIONS`](crate::parse::FUNCTIONS), the span of its name, and as many arguments as it takes.
+    /// A function of [`FUNCTIONS`](crate::parse::FUNCTIONS) or a [declared](crate::parse::Declared) one, the span of its name, and as many arguments as it takes.
     Call(String, Span, Vec<Ast>),
 }
 

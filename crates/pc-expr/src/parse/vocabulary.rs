@@ -11,6 +11,22 @@ pub struct Function {
     pub usage: &'static str,
 }
 
+/// A function that a text declares, with the names of its arguments.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Declared {
+    /// The name of the function.
+    pub name: String,
+    /// The names of its arguments.
+    pub arguments: Vec<String>,
+}
+
+impl Declared {
+    /// The form of a call: `V(r)`.
+    pub fn usage(&self) -> String {
+        format!("{}({})", self.name, self.arguments.join(", "))
+    }
+}
+
 const fn function(name: &'static str, arguments: usize, usage: &'static str) -> Function {
     Function { name, arguments, usage }
 }

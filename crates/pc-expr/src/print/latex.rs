@@ -2,6 +2,7 @@
 
 use crate::graph::function::Function;
 use crate::graph::number::Number;
+use crate::graph::undetermined::{Differentiation, Undetermined};
 use crate::print::piece::{Binding, Piece, multiple_of_pi};
 use crate::print::symbol::{GREEK, Index, Symbol, spelt};
 
@@ -93,6 +94,24 @@ pub(super) fn call(function: Function, args: Vec<Piece>) -> Piece {
         _ => format!("\\{}\\left({listed}\\right)", function.name()),
     };
     Piece::atom(text)
+}
+
+/// V(r), V'(r), V^{(4)}(r), A_{,x,y}(x, y)
+pub(super) fn applied(function: Undetermined, name: &str, args: &[String]) -> String {
+    let (name, listed) = (symbol(name), args.join(", "));
+    let differentiated = match function.differentiation(args) {
+        Differentiation::None => name,
+        Differentiation::Primes(count) => format!("{name}{}", "'".repeat(count)),
+        Differentiation::Order(order) => format!("{name}^{{({order})}}"),
+        Differentiation::Indices(indices) => {
+            let (stem, index) = match name.strip_suffix('}').and_then(|name| name.split_once("_{")) {
+                Some((stem, index)) => (stem.to_owned(), index.to_owned()),
+                None => (name, String::new()),
+            };
+            format!("{stem}_{{{index},{}}}", indices.join(","))
+        }
+    };
+    format!("{differentiated}\\left({listed}\\right)")
 }
 
 /// Functions whose argument may follow without brackets.

@@ -5,6 +5,7 @@
 
 use crate::graph::function::Function;
 use crate::graph::number::Number;
+use crate::graph::undetermined::{Differentiation, Undetermined};
 use crate::print::piece::{Binding, Piece, multiple_of_pi};
 use crate::print::symbol::{Index, Symbol, spelt};
 
@@ -108,6 +109,30 @@ pub(super) fn call(function: Function, args: Vec<Piece>) -> Piece {
     let is_bare = RAISED.contains(&function) && is_symbol(&listed);
     let argument = if is_bare { format!("{BARE}{listed}") } else { format!("{APPLY}{}", bracketed(&listed)) };
     Piece::atom(format!("<mi>{name}</mi>{argument}"))
+}
+
+/// V(r), V′(r), A_{,x,y}(x, y)
+pub(super) fn applied(function: Undetermined, name: &str, args: &[String]) -> String {
+    let (name, listed) = (symbol(name), args.join("<mo>,</mo>"));
+    let differentiated = match function.differentiation(args) {
+        Differentiation::None => name,
+        Differentiation::Primes(count) => format!("<msup>{name}<mo>{}</mo></msup>", "′".repeat(count)),
+        Differentiation::Order(order) => {
+            format!("<msup>{name}<mrow><mo>(</mo><mn>{order}</mn><mo>)</mo></mrow></msup>")
+        }
+        Differentiation::Indices(indices) => {
+            let index = |index: &String| match index.starts_with('<') {
+                true => format!("<mo>,</mo>{index}"),
+                false => format!("<mo>,</mo><mn>{index}</mn>"),
+            };
+            format!(
+                "<msub>{}<mrow>{}</mrow></msub>",
+                one(&name),
+                indices.iter().map(index).collect::<String>()
+            )
+        }
+    };
+    format!("{differentiated}{APPLY}{}", bracketed(&listed))
 }
 
 pub(super) fn power(base: &Piece, exponent: &str) -> String {

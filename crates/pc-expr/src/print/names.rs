@@ -320,7 +320,7 @@ impl<'d, 'g> Page<'d, 'g> {
                 }
                 return;
             }
-            Node::Product { .. } | Node::Call { .. } => {
+            Node::Product { .. } | Node::Call { .. } | Node::Applied { .. } => {
                 let mut parts = Vec::new();
                 self.dag.for_each_child(node, |child| parts.push(child));
                 parts

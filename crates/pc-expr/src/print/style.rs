@@ -2,6 +2,7 @@
 
 use crate::graph::function::Function;
 use crate::graph::number::Number;
+use crate::graph::undetermined::Undetermined;
 use crate::print::piece::{Binding, Piece, number};
 use crate::print::{book, latex, mathml};
 
@@ -85,6 +86,16 @@ impl Style {
             Style::Latex => latex::call(function, args),
             Style::MathMl => mathml::call(function, args),
         }
+    }
+
+    /// An undetermined function, or one of its derivatives, at its arguments.
+    pub(super) fn applied(self, function: Undetermined, name: &str, args: Vec<Piece>) -> Piece {
+        let args: Vec<String> = args.into_iter().map(|arg| arg.text).collect();
+        Piece::atom(match self {
+            Style::Text | Style::Book => format!("{}({})", function.text(name, &args), args.join(", ")),
+            Style::Latex => latex::applied(function, name, &args),
+            Style::MathMl => mathml::applied(function, name, &args),
+        })
     }
 
     pub(super) fn power(self, base: Piece, exponent: Piece) -> Piece {

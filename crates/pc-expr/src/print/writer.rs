@@ -82,6 +82,10 @@ impl<'d> Writer<'d> {
                     _ => self.style.call(function, args),
                 }
             }
+            Node::Applied { function, args } => {
+                let args: Vec<Piece> = function.args(&args).iter().map(|&arg| self.piece(arg)).collect();
+                self.style.applied(function, self.dag.function_name(function), args)
+            }
             Node::Product { .. } => self.monomial(Number::ONE, id, None),
             Node::Sum { .. } => join(self.style, self.terms(id)),
         }
@@ -365,7 +369,7 @@ fn factor_key(dag: &Dag, id: NodeId) -> (u8, u32) {
     match dag.node(id) {
         Node::Constant(_) => (0, 0),
         Node::Symbol(index) => (1, index),
-        Node::Call { .. } => (2, id.0),
+        Node::Call { .. } | Node::Applied { .. } => (2, id.0),
         Node::Product { .. } => (3, id.0),
         Node::Sum { .. } => (4, id.0),
     }

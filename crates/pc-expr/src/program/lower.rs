@@ -38,7 +38,7 @@ impl Program {
         };
         let known: Vec<Expr<'g>> =
             inputs.time.iter().chain(&inputs.state).chain(&inputs.parameters).copied().collect();
-        let outputs = graph.written_in(outputs, &known);
+        let outputs = graph.written_in(&graph.with_stand_ins(outputs), &known);
         let atoms: Vec<Atom> = outputs.iter().map(|x| x.atom_in(graph)).collect();
         let mut program = Program {
             constants: Vec::new(),
@@ -154,6 +154,7 @@ impl<'a> Lowering<'a> {
         }
         match dag.node(id) {
             Node::Constant(c) => self.constant(c),
+            Node::Applied { .. } => unreachable!("stand-ins take the place of undetermined functions"),
             Node::Symbol(_) => unreachable!("every symbol of the cone is an input"),
             Node::Call { function, args } => {
                 let mut registers = [Register(0); 3];

@@ -16,6 +16,15 @@ const LONGEST_TRIED: u32 = 1000;
 /// A choice is regular if its determinant, in the kinetic metric, is at least this fraction of the largest: the
 /// motion then stays away from states with singular equations for a while.
 const REGULAR: f64 = 0.5;
+/// A choice that is regular everywhere is taken with a determinant of this fraction of the largest.
+const REGULAR_EVERYWHERE: f64 = 0.1;
+/// The number of states at which determinants are compared, and how far from the given values they reach, in units of 1 +
+/// |x|: an angle passes through a turn.
+const STATES: usize = 48;
+const REACH: f64 = 3.2;
+const NEAR: f64 = 0.5;
+/// A choice whose determinant falls below this fraction of the largest at one of the states has a pole nearby.
+const POLE: f64 = 0.02;
 /// A pivot chosen because it is the shortest in print must be at least this fraction of the largest, so that
 /// equations lose at most one digit. (There is a second reason to derive the equations of only a few choices:
 /// expressions formed earlier in a graph influence the form of later ones.)
@@ -82,7 +91,8 @@ impl<'g> Multipliers<'g> {
 
     /// Of all equations in independent quasi-velocities that are regular at the values `at`, those that are
     /// shortest in print, as derived by `derive`. Among equally short equations, those with the best
-    /// conditioned constraints are taken.
+    /// conditioned constraints are taken. Choices without a pole in the reach of the motion come first: one that has none
+    /// in a neighbourhood of the values is preferred to any that has.
     ///
     /// If there are more than 20 choices or more than 3 constraints, or the Lagrangian is long, no equations are
     /// compared: C is then eliminated, each time with the pivot that is shortest in print among those that are at
@@ -107,16 +117,67 @@ impl<'g> Multipliers<'g> {
         let Some(choices) = choices(k, m).filter(|_| is_short) else {
             return Ok(self.depending(weighed.shortest_pivots(self.coefficients()).unwrap_or(best)));
         };
-        let largest = choices.iter().map(|choice| weighed.determinant(choice)).fold(0.0, f64::max);
-        let regular = |choice: &Vec<usize>| weighed.determinant(choice) >= REGULAR * largest;
-        let others = choices.into_iter().filter(|choice| *choice != best && regular(choice));
-        let tried = std::iter::once(best.clone()).chain(others).filter_map(|choice| {
+        let largest = choices.iter().map(|choice| weighed.determinant(choice).abs()).fold(0.0, f64::max);
+        let regular = |choice: &Vec<usize>, part: f64| weighed.determinant(choice).abs() >= part * largest;
+        let everywhere: Vec<Vec<usize>> = self
+            .without_poles(&choices, at, REACH)
+            .into_iter()
+            .filter(|choice| regular(choice, REGULAR_EVERYWHERE))
+            .collect();
+        let candidates = if everywhere.is_empty() {
+            let others = choices.into_iter().filter(|choice| *choice != best && regular(choice, REGULAR));
+            std::iter::once(best.clone()).chain(others).collect()
+        } else {
+            everywhere
+        };
+        let tried = candidates.into_iter().filter_map(|choice| {
             let chosen = self.depending(choice);
             // One choice may fail where another succeeds; if all fail, the error is that of the best.
             derive(&chosen).ok().map(|equations| (printed_length(&equations), chosen))
         });
         let shortest = tried.min_by_key(|&(length, _)| length).map(|(_, chosen)| chosen);
         Ok(shortest.unwrap_or_else(|| self.depending(best)))
+    }
+
+    /// Whether the constraints determine these dependent quasi-velocities at the values and at all states near them, up to
+    /// about half the size of a coordinate or a radian away.
+    pub fn determines_near(&self, dependent: &[usize], at: &[(Expr<'g>, f64)]) -> bool {
+        !self.without_poles(&[dependent.to_vec()], at, NEAR).is_empty()
+    }
+
+    /// Those of the choices of dependent quasi-velocities that determine these at all states as far from the values as
+    /// `reach`, in units of 1 + |x|: their determinants keep their signs, and stay comparable to the largest of the state
+    /// and to their own.
+    fn without_poles(&self, choices: &[Vec<usize>], at: &[(Expr<'g>, f64)], reach: f64) -> Vec<Vec<usize>> {
+        let x = self.equations().system().frame().coordinates();
+        let primes = (2u32..).filter(|n| (2..*n).all(|d| n % d != 0));
+        let roots: Vec<f64> = primes.take(x.len()).map(|p| f64::from(p).sqrt()).collect();
+        let beside = |number: usize| -> Vec<(Expr<'g>, f64)> {
+            let side = |i: usize| 2.0 * (number as f64 * roots[i]).fract() - 1.0;
+            let moved = |&(symbol, value): &(Expr<'g>, f64)| match x.iter().position(|&x| x == symbol) {
+                Some(i) => (symbol, value + reach * (1.0 + value.abs()) * side(i)),
+                None => (symbol, value),
+            };
+            at.iter().map(moved).collect()
+        };
+        // Where C is not defined, nothing is compared.
+        let states = std::iter::once(at.to_vec()).chain((1..STATES).map(beside));
+        let determinants: Vec<Vec<f64>> = states
+            .filter_map(|state| self.weighed(&state).ok())
+            .filter(Weighed::is_finite)
+            .map(|weighed| choices.iter().map(|choice| weighed.determinant(choice)).collect())
+            .collect();
+        let is_regular = |choice: &usize| {
+            let sizes = determinants.iter().map(|state| state[*choice].abs());
+            let own = sizes.fold(0.0, f64::max);
+            let is_large = |state: &Vec<f64>| {
+                let largest = state.iter().fold(own, |largest, determinant| largest.max(determinant.abs()));
+                state[*choice].abs() > POLE * largest
+            };
+            let positive = determinants.iter().filter(|state| state[*choice] > 0.0).count();
+            (positive == 0 || positive == determinants.len()) && determinants.iter().all(is_large)
+        };
+        (0..choices.len()).filter(is_regular).map(|choice| choices[choice].clone()).collect()
     }
 
     fn weighed(&self, at: &[(Expr<'g>, f64)]) -> Result<Weighed, MechError> {
@@ -140,7 +201,11 @@ impl<'g> Multipliers<'g> {
 }
 
 impl Weighed {
-    /// |det C_D|
+    fn is_finite(&self) -> bool {
+        self.rows.iter().flatten().all(|entry| entry.is_finite())
+    }
+
+    /// det C_D
     fn determinant(&self, dependent: &[usize]) -> f64 {
         let mut rows: Vec<Vec<f64>> =
             self.rows.iter().map(|row| dependent.iter().map(|&d| row[d]).collect()).collect();
@@ -151,8 +216,11 @@ impl Weighed {
             else {
                 break;
             };
-            rows.swap(step, best);
-            determinant *= rows[step][step].abs();
+            if best != step {
+                rows.swap(step, best);
+                determinant = -determinant;
+            }
+            determinant *= rows[step][step];
             if determinant == 0.0 || determinant.is_nan() {
                 return 0.0;
             }
@@ -234,8 +302,8 @@ mod tests {
     #[test]
     fn determinants_are_those_of_the_columns() {
         let weighed = Weighed { rows: vec![vec![0.0, 1.0, 2.0], vec![1.0, 0.0, 3.0]] };
-        assert_eq!(weighed.determinant(&[0, 1]), 1.0);
-        assert_eq!(weighed.determinant(&[0, 2]), 2.0);
+        assert_eq!(weighed.determinant(&[0, 1]), -1.0);
+        assert_eq!(weighed.determinant(&[0, 2]), -2.0);
         assert_eq!(weighed.determinant(&[1, 2]), 3.0);
     }
 }

@@ -42,6 +42,11 @@ pub enum LagrangianError {
         /// Number k of quasi-velocities.
         quasi_velocities: usize,
     },
+    /// L or ∂L/∂η has no value where the velocities vanish, so that inertia cannot be separated from forces.
+    #[error(
+        "the Lagrangian or its momenta have no value at rest, so that forces of inertia cannot be separated from active forces"
+    )]
+    NoRest,
     /// L jumps on the path of the motion, so that the force derived from L is an impulse there.
     #[error("the Lagrangian jumps by {} at {}: its force there is an impulse", approximately(*size), at(place))]
     Jumps {

@@ -8,6 +8,7 @@ mod common;
 mod constraint_manifold;
 mod derivatives;
 mod external;
+mod force_balance;
 mod given_brackets;
 mod input_forms;
 mod kept;

@@ -157,11 +157,7 @@ impl<'g> Assembler<'g, '_> {
         let rates = self.state_rates(&x_dot)?;
         let (forces, on_coordinates) = self.forces(eta.len(), &x_dot)?;
         let integrals = self.observed(&document.integrals, &eta, &x_dot)?;
-        let mut outputs = self.observed(&document.outputs, &eta, &x_dot)?;
-        if self.model.observes_reactions() {
-            let names = document.constraints.iter().map(|constraint| format!("λ_{}", constraint.name.text));
-            outputs.extend(names.map(|name| (name.clone(), self.graph.symbol(&name))));
-        }
+        let outputs = self.observed(&document.outputs, &eta, &x_dot)?;
 
         let given = self.given_quasi_velocities(&eta, &x_dot)?;
         let crossings = self.crossings(&x_dot)?;
@@ -229,6 +225,7 @@ impl<'g> Assembler<'g, '_> {
             self.events(crossings, &x_dot, &constraints, system.frame().coordinates().len() + eta.len())?;
         let action = self.action()?;
         self.scope.look_at_unused()?;
+        self.scope.look_at_functions()?;
         Ok(Assembly {
             system,
             constraints,

@@ -53,6 +53,11 @@ impl<'g> Assembly<'g> {
         state.zip(self.start.iter().copied()).chain([(frame.time(), self.t_start)]).collect()
     }
 
+    /// The names of the functions without a value, which stand for any smooth functions.
+    pub fn undetermined_functions(&self) -> Vec<String> {
+        self.document.undetermined_functions().map(|function| function.name.text.clone()).collect()
+    }
+
     /// The result of a derivation from this system; an error is located at the entry of the file that causes it.
     ///
     /// # Errors

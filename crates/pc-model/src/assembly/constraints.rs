@@ -175,17 +175,24 @@ impl<'g> Assembler<'g, '_> {
     ) -> Result<Option<Reacting<'g>>, ModelError> {
         let Some(binding) = classification.multipliers() else { return Ok(None) };
         let redundant = classification.redundant();
-        // Dropped constraints have no reaction.
-        let none =
-            |dropped: &Redundant| (self.graph.symbol(&format!("λ_{}", dropped.constraint)), Expr::ZERO);
-        let system = trial.system.with_observed(&redundant.iter().map(none).collect::<Vec<_>>());
+        // How constraints that follow from each other share their reaction is not determined: dropped ones have none.
+        let is_dropped = |name: &str| redundant.iter().any(|dropped| dropped.constraint == name);
+        let reaction = |name: &str| self.graph.symbol(&format!("λ_{name}"));
+        let none = |dropped: &Redundant| (reaction(&dropped.constraint), Expr::ZERO);
+        let mut system = trial.system.with_observed(&redundant.iter().map(none).collect::<Vec<_>>());
+        if self.model.observes_reactions() {
+            let names =
+                self.model.document().constraints.iter().map(|constraint| constraint.name.text.as_str());
+            let binding = names.filter(|name| !is_dropped(name));
+            system = system.with_more_outputs(binding.map(|name| (format!("λ_{name}"), reaction(name))));
+        }
         let (system, undetermined) = self.with_resultants(system, binding, redundant)?;
         let multipliers = system.with_multipliers(binding.constraints());
         let multipliers =
             multipliers.map_err(|error| self.model.document().constraint_error(error.into()))?;
         // The declared quasi-velocities, if these are completed and then independent.
         let declared = &system.quasi_velocities()[..self.scope.quasi_velocities().len()];
-        let dropped = |c: &&Constraint<'g>| redundant.iter().any(|dropped| dropped.constraint == c.name());
+        let dropped = |c: &&Constraint<'g>| is_dropped(c.name());
         let followers: Vec<Constraint<'g>> = trial.constraints.iter().filter(dropped).cloned().collect();
         let multipliers = multipliers.preferring(declared).followed_by(&followers);
         Ok(Some(Reacting { system, multipliers, undetermined }))

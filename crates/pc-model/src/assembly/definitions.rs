@@ -99,7 +99,7 @@ impl<'g> Assembler<'g, '_> {
         let texts = self.model.document().quasi_velocities.iter().filter_map(|q| q.is.as_ref());
         let row = |(&definition, is): (&Expr<'g>, &Expression)| {
             let parts = affine(self.graph, definition, &velocities);
-            let fault = |text| MeaningError::NotAffine { text, variables: "velocities" };
+            let fault = |text| MeaningError::NonlinearQuasiVelocity { text, variables: "velocities" };
             parts.map(|(row, _)| row).ok_or_else(|| self.scope.error(is, is.ast.span, fault))
         };
         definitions.iter().zip(texts).map(row).collect()

@@ -78,7 +78,8 @@ impl<'g> Assembler<'g, '_> {
         Frame::from_velocities(self.graph, time, x, &eta, &velocities).map_err(|error| match error {
             AlgebraError::NotAffine { coordinate, .. } => match entry(&document.kinematics, &coordinate) {
                 Some(NamedExpression { expression, .. }) => {
-                    let fault = |text| MeaningError::NotAffine { text, variables: "quasi-velocities" };
+                    let fault =
+                        |text| MeaningError::NonlinearQuasiVelocity { text, variables: "quasi-velocities" };
                     self.scope.error(expression, expression.ast.span, fault)
                 }
                 None => self

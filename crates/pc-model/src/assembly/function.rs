@@ -30,9 +30,23 @@ impl Model {
     /// # Errors
     /// [`ModelError`] at the place in `text` that causes the error.
     pub fn function<'g>(&self, assembly: &Assembly<'g>, text: &str) -> Result<Expr<'g>, ModelError> {
+        self.function_in(assembly, text, &[])
+    }
+
+    /// The function of (t, x, η) and of `others`, symbols such as momenta, given by a text as for
+    /// [`function`](Model::function); a name of the model does not denote another symbol.
+    ///
+    /// # Errors
+    /// [`ModelError`] at the place in `text` that causes the error.
+    pub fn function_in<'g>(
+        &self,
+        assembly: &Assembly<'g>,
+        text: &str,
+        others: &[Expr<'g>],
+    ) -> Result<Expr<'g>, ModelError> {
         let (system, source) = (&assembly.system, Source::new("expression", text));
-        let expression = Expression::of(&source)?;
-        let mut scope = Scope::new(system.graph(), self.document()).elsewhere(&source);
+        let expression = Expression::of(&source, &self.document().declared_functions())?;
+        let mut scope = Scope::new(system.graph(), self.document()).elsewhere(&source).with_names_of(others);
         let value = scope.resolve(&expression, Stage::Function)?;
         let velocities = system.frame().velocities(system.quasi_velocities());
         let velocities: Vec<_> = scope.velocities().into_iter().zip(velocities).collect();

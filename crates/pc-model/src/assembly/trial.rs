@@ -73,7 +73,9 @@ impl<'g> Trial<'_, 'g> {
         let refused = |error: MechError| self.model.document().constraint_error(error.into());
         if let Some(multipliers) = classification.multipliers() {
             let options = CompileOptions::default().jacobian(false);
-            let mut motion = multipliers.compile_for(options).map_err(refused)?;
+            // What is observed may contain reactions that are not attached yet.
+            let bare = self.system.without_observed().with_multipliers(multipliers.constraints());
+            let mut motion = bare.and_then(|bare| bare.compile_for(options)).map_err(refused)?;
             if held.is_empty() {
                 motion.project(self.t, &mut nearest).map_err(|failure| refused(failure.into()))?;
             } else {

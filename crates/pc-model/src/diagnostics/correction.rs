@@ -60,6 +60,9 @@ impl MeaningError {
             MeaningError::NotAnIntegral { .. } => {
                 "leave it out of `project`; `pc check` says what the motion keeps".into()
             }
+            MeaningError::NoValue { name, arguments } => format!(
+                "give its value in [functions]: `{name} = {{ of = \"{arguments}\", is = \"…\" }}`; without a value the equations can be derived and studied, `pc derive` and `pc theory`"
+            ),
             MeaningError::UsedBeforeDefined { .. } => "what is defined is evaluated in order; move it up".into(),
             MeaningError::NotACoordinate { name, coordinates } => {
                 suggest(name, coordinates, &format!("the coordinates are {}", listed(coordinates)))
@@ -77,6 +80,11 @@ impl MeaningError {
             MeaningError::NotHere { allowed, .. } => format!("use {allowed} only"),
             MeaningError::Acceleration { .. } => "accelerations can be used in [integrals] and [outputs]".into(),
             MeaningError::DivisionByZero { .. } => "the divisor is zero whatever the motion".into(),
+            MeaningError::NonlinearQuasiVelocity { variables, .. } => format!(
+                "Hamel's nonlinear quasi-velocities are not taken: write a sum of terms linear in the {variables}, with \
+                 coefficients of coordinates, parameters and t; observe a nonlinear function in [outputs], hold it by a \
+                 constraint with `kind = \"nonlinear\"`, or give it in [states] by its rate"
+            ),
             MeaningError::NotAffine { variables, .. } => format!("write a sum of terms linear in the {variables}"),
             MeaningError::ConstraintNotAffine { constraint, .. } => format!(
                 "write a sum of terms linear in the velocities, or declare it nonlinear, with Chetaev's condition for the \

@@ -264,6 +264,8 @@ pub enum Role {
     Parameter,
     /// An entry of `[inputs]`.
     Input,
+    /// An entry of `[functions]`.
+    Function,
     /// An entry of `[definitions]`.
     Definition,
     /// An entry of `[coordinates]`.
@@ -289,6 +291,7 @@ impl fmt::Display for Role {
         f.write_str(match self {
             Self::Parameter => "a parameter",
             Self::Input => "an input",
+            Self::Function => "a function",
             Self::Definition => "a definition",
             Self::Coordinate => "a coordinate",
             Self::QuasiVelocity => "a quasi-velocity",
@@ -307,6 +310,7 @@ pub(crate) const SECTIONS: &[&str] = &[
     "model",
     "parameters",
     "inputs",
+    "functions",
     "definitions",
     "coordinates",
     "quasi_velocities",
@@ -387,7 +391,7 @@ impl ErrorKind {
             }
             Self::Reserved { name } => reserved(name),
             Self::NameTaken { name, .. } => format!(
-                "parameters, inputs, definitions, coordinates, quasi-velocities, states, integrals and outputs share one \
+                "parameters, inputs, functions, definitions, coordinates, quasi-velocities, states, integrals and outputs share one \
                  namespace; choose another name, such as `{name}_1`"
             ),
             Self::NotAPair { .. } => {

@@ -64,13 +64,29 @@ pub enum MeaningError {
         /// A phrase for the place where it is used.
         place: &'static str,
     },
+    /// Numbers asked for from a function whose value is not given.
+    #[error("the function `{name}` has no value, so there are no numbers")]
+    NoValue {
+        /// The name of the function.
+        name: String,
+        /// The names of its arguments, separated by commas.
+        arguments: String,
+    },
     /// A division by zero.
     #[error("`{text}` divides by zero")]
     DivisionByZero {
         /// The quotient as written.
         text: String,
     },
-    /// A definition that is not affine in the velocities, or kinematics that are not affine in the quasi-velocities.
+    /// A quasi-velocity that is a nonlinear function of the velocities, or kinematics that are nonlinear in the quasi-velocities.
+    #[error("`{text}` is not affine in the {variables}")]
+    NonlinearQuasiVelocity {
+        /// The expression as written.
+        text: String,
+        /// `velocities` or `quasi-velocities`.
+        variables: &'static str,
+    },
+    /// An angular velocity that is not affine in the velocities.
     #[error("`{text}` is not affine in the {variables}")]
     NotAffine {
         /// The expression as written.

@@ -77,11 +77,12 @@ impl Document {
         let quasi = self.quasi_velocities.iter().map(|quasi| (&quasi.name, Role::QuasiVelocity));
         let inputs = self.inputs.iter().map(|input| (&input.name, Role::Input));
         let states = self.states.iter().map(|state| (&state.name, Role::State));
+        let functions = self.functions.iter().map(|function| (&function.name, Role::Function));
         let action = self.hamilton_jacobi.iter().flat_map(|action| &action.constants);
         let constants = action.map(|(name, _)| (name, Role::Constant));
         let points = self.points.iter().flat_map(|point| &point.components).map(|name| (name, Role::Point));
         let mut names: Vec<(&Name, Role)> =
-            quasi.chain(states).chain(inputs).chain(constants).chain(points).collect();
+            quasi.chain(states).chain(functions).chain(inputs).chain(constants).chain(points).collect();
         for (entries, role) in [
             (&self.parameters, Role::Parameter),
             (&self.definitions, Role::Definition),

@@ -23,6 +23,8 @@ pub struct Document {
     pub parameters: Vec<NamedExpression>,
     /// `[inputs]`
     pub inputs: Vec<Input>,
+    /// `[functions]`
+    pub functions: Vec<GivenFunction>,
     /// `[definitions]`
     pub definitions: Vec<NamedExpression>,
     /// Coordinates, each with its start value: those of joints, then the others, from `[coordinates]`.
@@ -118,6 +120,17 @@ pub struct TableFile {
     pub time: Option<Located<String>>,
     /// The interpolation between the times.
     pub interpolation: Interpolation,
+}
+
+/// A function that expressions may call, f(x…).
+#[derive(Clone, Debug, PartialEq)]
+pub struct GivenFunction {
+    /// Its name.
+    pub name: Name,
+    /// The names of its arguments.
+    pub arguments: Vec<String>,
+    /// Its value, an expression in its arguments and parameters; without a value, it stands for any smooth function.
+    pub is: Option<Expression>,
 }
 
 /// A quasi-velocity η_s: at least one of `is` and `start` is given.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use pc_expr::parse::{Ast, Span, parse};
+use pc_expr::parse::{Ast, Declared, Span, parse, parse_with};
 
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::source::{Place, Source};
@@ -38,13 +38,13 @@ pub struct Expression {
 }
 
 impl Expression {
-    /// The expression given by the whole text of a source.
+    /// The expression given by the whole text of a source, which may call the declared functions.
     ///
     /// # Errors
     /// [`ModelError`] if the text is not an expression.
-    pub(crate) fn of(source: &Source) -> Result<Expression, ModelError> {
+    pub(crate) fn of(source: &Source, functions: &[Declared]) -> Result<Expression, ModelError> {
         let text = source.text();
-        let ast = parse(text).map_err(|error| {
+        let ast = parse_with(text, functions).map_err(|error| {
             let span = error.span.start..error.span.end;
             source.error(&Place { entry: String::new(), span }, error)
         })?;

@@ -17,7 +17,7 @@ use crate::diagnostics::source::Source;
 use crate::document::contents::Document;
 use crate::document::loops::{self, Loop};
 use crate::document::reader::{Item, Table};
-use crate::document::{bodies, checks, draw, hanging, inputs, sections, simulation, syntax, tree};
+use crate::document::{bodies, checks, draw, functions, hanging, inputs, sections, simulation, syntax, tree};
 
 impl Document {
     /// The document of a model file.
@@ -30,7 +30,9 @@ impl Document {
 
     fn parsed(source: Source) -> Result<Self, ModelError> {
         let (mut document, mut loops) = (Self::default(), Vec::new());
-        for item in Table::root(&source, &syntax::table(&source)?).items() {
+        let entries = syntax::table(&source)?;
+        let declared = functions::declared(&Table::root(&source, &entries, &[]))?;
+        for item in Table::root(&source, &entries, &declared).items() {
             document.read(&item, &mut loops)?;
         }
         document.source = source;
@@ -71,6 +73,7 @@ impl Document {
             "model" => self.model = sections::heading(&table)?,
             "parameters" => self.parameters = table.declarations()?,
             "inputs" => self.inputs = inputs::inputs(&table)?,
+            "functions" => self.functions = functions::functions(&table)?,
             "definitions" => self.definitions = table.declarations()?,
             "coordinates" => self.coordinates = table.declarations()?,
             "quasi_velocities" => sections::quasi_velocities(&table, self)?,

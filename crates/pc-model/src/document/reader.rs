@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use pc_expr::parse::{Ast, AstKind, FUNCTIONS, Span, is_name, nearest, parse};
+use pc_expr::parse::{Ast, AstKind, Declared, FUNCTIONS, Span, is_name, nearest, parse_with};
 use toml::Spanned;
 use toml::de::{DeArray, DeInteger, DeString, DeTable, DeValue};
 
@@ -17,6 +17,8 @@ use crate::document::expression::{Expression, Located, Name, NamedExpression};
 #[derive(Clone)]
 pub(super) struct Table<'a> {
     source: &'a Source,
+    /// The functions that expressions may call besides those of the language.
+    functions: &'a [Declared],
     pub(super) place: Place,
     entries: &'a DeTable<'a>,
 }
@@ -25,6 +27,7 @@ pub(super) struct Table<'a> {
 #[derive(Clone)]
 pub(super) struct Item<'a> {
     source: &'a Source,
+    functions: &'a [Declared],
     key: &'a str,
     /// The bytes of the key as written, including quotes.
     key_span: Range<usize>,
@@ -34,18 +37,18 @@ pub(super) struct Item<'a> {
 }
 
 /// Whether a name has a fixed meaning.
-fn is_reserved(name: &str) -> bool {
+pub(super) fn is_reserved(name: &str) -> bool {
     matches!(name, "t" | "pi" | "energy") || FUNCTIONS.iter().any(|function| function.name == name)
 }
 
 impl<'a> Table<'a> {
     /// The whole file.
-    pub(super) fn root(source: &'a Source, entries: &'a DeTable<'a>) -> Self {
-        Self { source, place: Place::default(), entries }
+    pub(super) fn root(source: &'a Source, entries: &'a DeTable<'a>, functions: &'a [Declared]) -> Self {
+        Self { source, functions, place: Place::default(), entries }
     }
 
     pub(super) fn items(&self) -> impl Iterator<Item = Item<'a>> {
-        let (source, path) = (self.source, self.place.entry.clone());
+        let (source, functions, path) = (self.source, self.functions, self.place.entry.clone());
         self.entries.iter().map(move |(key, value): (&Spanned<DeString<'a>>, _)| {
             let name = key.get_ref();
             let entry = match path.as_str() {
@@ -54,7 +57,7 @@ impl<'a> Table<'a> {
                 outer => format!("{outer}.{name}"),
             };
             let place = Place { entry, span: value.span() };
-            Item { source, key: name, key_span: key.span(), place, value: value.get_ref() }
+            Item { source, functions, key: name, key_span: key.span(), place, value: value.get_ref() }
         })
     }
 
@@ -107,6 +110,11 @@ impl<'a> Item<'a> {
 
     pub(super) fn is_table(&self) -> bool {
         self.value.is_table()
+    }
+
+    /// The entry, whose expressions may call only the first `count` of the declared functions.
+    pub(super) fn with_functions_before(&self, count: usize) -> Item<'a> {
+        Item { functions: &self.functions[..count.min(self.functions.len())], ..self.clone() }
     }
 
     /// An error about the value.
@@ -223,7 +231,10 @@ impl<'a> Item<'a> {
     /// The value as a separate table.
     pub(super) fn table(&self, expected: &'static str, example: &str) -> Result<Table<'a>, ModelError> {
         match self.value {
-            DeValue::Table(entries) => Ok(Table { source: self.source, place: self.place.clone(), entries }),
+            DeValue::Table(entries) => {
+                let (source, functions) = (self.source, self.functions);
+                Ok(Table { source, functions, place: self.place.clone(), entries })
+            }
             _ => Err(self.wrong_type(expected, example)),
         }
     }
@@ -327,7 +338,7 @@ impl<'a> Item<'a> {
         let (raw, start) = (self.raw(), self.place.span.start);
         if let DeValue::String(text) = self.value {
             let map = TextMap::new(raw, start, text);
-            let ast = parse(text).map_err(|error| {
+            let ast = parse_with(text, self.functions).map_err(|error| {
                 let span = map.locate(error.span.start..error.span.end);
                 self.source.error(&Place { entry: entry.clone(), span }, error)
             })?;

@@ -31,8 +31,23 @@ impl Flow {
     /// The equations in these variables.
     ///
     /// # Errors
-    /// [`ModelError`] if there are no such equations, or they cannot be evaluated at the start.
+    /// [`ModelError`] if there are no such equations, if a function has [no value](Model::require_values), or if
+    /// they cannot be evaluated at the start.
     pub fn new(model: &Model, assembly: &Assembly<'_>, variables: Variables) -> Result<Flow, ModelError> {
+        model.require_values()?;
+        Flow::with_stand_ins(model, assembly, variables)
+    }
+
+    /// The equations in these variables, with each undetermined function replaced by its
+    /// [stand-in](pc_expr::StandIn): for comparisons that hold for every function.
+    ///
+    /// # Errors
+    /// As for [`new`](Flow::new), but for functions without a value.
+    pub fn with_stand_ins(
+        model: &Model,
+        assembly: &Assembly<'_>,
+        variables: Variables,
+    ) -> Result<Flow, ModelError> {
         let refused = |error| assembly.document.derivation_error(error);
         match (variables, assembly.constraints.held()) {
             (Variables::QuasiVelocities, Some(_)) => {

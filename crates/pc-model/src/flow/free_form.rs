@@ -41,7 +41,7 @@ impl<'g> FreeForm<'g> {
         FreeForm::own(assembly.system.clone())
     }
 
-    fn changed(independent: &[Expr<'g>], change: &QuasiVelocityChange<'g>) -> FreeForm<'g> {
+    pub(super) fn changed(independent: &[Expr<'g>], change: &QuasiVelocityChange<'g>) -> FreeForm<'g> {
         FreeForm {
             independent: independent.to_vec(),
             values: change.old_quasi_velocities().to_vec(),
@@ -73,6 +73,7 @@ impl<'g> Assembly<'g> {
             }
             Variables::Orthonormal => self.orthonormal(&free),
             Variables::Given => self.in_given(&free),
+            Variables::IndependentVelocities => self.in_velocities(&free),
         }
     }
 

@@ -110,7 +110,7 @@ impl Document {
                 self.error(&self.operator_place(1), MeaningError::Jumps { message: error.to_string() })
             }
             error if error.is_of_dependent_coordinates() => {
-                let help = "its forms are poincare and canonical, in the quasi-velocities of the model";
+                let help = "its forms are poincare, canonical, kane and gibbs-appell, in the quasi-velocities of the model";
                 self.error(&self.energy_place(), MeaningError::NoForm { message: error.to_string(), help })
             }
             error if error.is_not_quadratic() => {

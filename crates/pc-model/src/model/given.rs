@@ -48,7 +48,8 @@ impl GivenQuasiVelocity {
             let line = document.source.position(known.place.span.start).line;
             return refuse(ErrorKind::NameTaken { name: name.to_owned(), first, line });
         }
-        Ok(GivenQuasiVelocity { name: name.to_owned(), expression: Expression::of(&source)?, source })
+        let expression = Expression::of(&source, &document.declared_functions())?;
+        Ok(GivenQuasiVelocity { name: name.to_owned(), expression, source })
     }
 
     /// The quasi-velocities of the document, which is already checked.

@@ -6,6 +6,8 @@ use pc_expr::{Budget, Graph, Limits};
 use pc_mech::Table;
 
 use crate::assembly::parameters::Parameters;
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::source::Place;
 use crate::document::Document;
 use crate::model::given::GivenQuasiVelocity;
@@ -119,6 +121,34 @@ impl Model {
     /// The document from which the model was made.
     pub fn document(&self) -> &Document {
         &self.document
+    }
+
+    /// Checks that every function has a value, without which there are no numbers, only equations for all functions.
+    ///
+    /// ```
+    /// use pc_model::{Document, Model, Source};
+    /// let text = "functions.V.of = \"s\"\ncoordinates.r = 1.0\nlagrangian.lagrangian = \"r'^2/2 - V(r)\"";
+    /// let model = Model::new(Document::parse(Source::new("model.toml", text))?);
+    /// model.derived(|assembly| {
+    ///     let equations = assembly.equations()?;
+    ///     assert_eq!(equations.system().energy().to_string(), "1/2*r'^2 + V(r)");
+    ///     Ok::<_, pc_model::ModelError>(())
+    /// })?;
+    /// let error = model.require_values().unwrap_err();
+    /// assert_eq!(error.diagnostic().message, "the function `V` has no value, so there are no numbers");
+    /// # Ok::<(), pc_model::ModelError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`ModelError`] at the first function without a value.
+    pub fn require_values(&self) -> Result<(), ModelError> {
+        match self.document.undetermined_functions().next() {
+            Some(function) => {
+                let (name, arguments) = (function.name.text.clone(), function.arguments.join(", "));
+                Err(self.document.error(&function.name.place, MeaningError::NoValue { name, arguments }))
+            }
+            None => Ok(()),
+        }
     }
 
     pub(crate) fn shared_document(&self) -> Arc<Document> {

@@ -29,6 +29,7 @@ impl<'g> Scope<'g, '_> {
         }
         match stage {
             Stage::Parameter
+            | Stage::Body
             | Stage::Start
             | Stage::Joint
             | Stage::Kinematics
@@ -60,6 +61,7 @@ impl<'g> Scope<'g, '_> {
     ) -> Result<Expr<'g>, ModelError> {
         let refused = match stage {
             Stage::Parameter
+            | Stage::Body
             | Stage::Start
             | Stage::Joint
             | Stage::Kinematics

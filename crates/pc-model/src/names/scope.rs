@@ -51,6 +51,8 @@ pub(crate) struct Scope<'g, 'd> {
     /// The source in which the expressions are located.
     source: &'d Source,
     pub(super) time: Expr<'g>,
+    /// Symbols that have no declaration in the document.
+    others: Vec<Expr<'g>>,
     /// The index of each definition in its section.
     pub(super) places: HashMap<&'d str, usize>,
     /// The definitions used so far: each is resolved once for each stage.
@@ -61,6 +63,8 @@ pub(crate) struct Scope<'g, 'd> {
     pub(super) context: Context<'g>,
     /// Quotients, calls and whole expressions, in the order of their evaluation: each after its parts.
     pub(crate) written: Vec<Written<'g>>,
+    /// The arguments of the function whose value is being resolved.
+    pub(super) arguments: Vec<(&'d str, Expr<'g>)>,
     /// The components of points, which are all computed when one of them is used.
     pub(super) points: Option<HashMap<String, Expr<'g>>>,
     /// The forces and torques of reactions that are used, each with a place in the file.
@@ -86,11 +90,13 @@ impl<'g, 'd> Scope<'g, 'd> {
             document,
             source: &document.source,
             time,
+            others: Vec::new(),
             places: places.collect(),
             definitions: BTreeMap::new(),
             uses: Vec::new(),
             context: Context::default(),
             written: Vec::new(),
+            arguments: Vec::new(),
             points: None,
             resultants: Vec::new(),
         }
@@ -99,6 +105,11 @@ impl<'g, 'd> Scope<'g, 'd> {
     /// A scope with the same names, for expressions in another source.
     pub(crate) fn elsewhere(self, source: &'d Source) -> Scope<'g, 'd> {
         Scope { source, ..self }
+    }
+
+    /// The scope with the names of other symbols, which those of the document hide.
+    pub(crate) fn with_names_of(self, others: &[Expr<'g>]) -> Scope<'g, 'd> {
+        Scope { others: others.to_vec(), ..self }
     }
 
     pub(crate) fn coordinates(&self) -> Vec<Expr<'g>> {
@@ -156,7 +167,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         self.source.error(&expression.place(span), ErrorKind::Meaning(fault(text)))
     }
 
-    fn note(&mut self, expression: &Expression, span: Span, value: Expr<'g>) {
+    pub(super) fn note(&mut self, expression: &Expression, span: Span, value: Expr<'g>) {
         let text = expression.text.get(span.start..span.end).unwrap_or_default().to_owned();
         let context = self.context.clone();
         self.written.push(Written { value, place: expression.place(span), text, context });
@@ -210,6 +221,9 @@ impl<'g, 'd> Scope<'g, 'd> {
                 let power = power.pow(self.ast(expression, exponent, stage)?);
                 self.note(expression, ast.span, power);
                 Ok(power)
+            }
+            AstKind::Call(name, _, args) if self.declared(name).is_some() => {
+                self.declared_call(expression, ast, (name, args), stage)
             }
             AstKind::Call(function, _, args) => {
                 let mut values = Vec::with_capacity(args.len());
@@ -278,6 +292,9 @@ impl<'g, 'd> Scope<'g, 'd> {
         if name == "pi" {
             return Ok(std::f64::consts::PI.into());
         }
+        if stage == Stage::Body {
+            return self.name_in_body(name).map_or_else(|| refuse(self), Ok);
+        }
         let own = self.context.definition.map(|(_, own)| own);
         let is_late = |place| own.is_some_and(|own| own <= place);
         let late = |_| MeaningError::UsedBeforeDefined { name: name.to_owned() };
@@ -301,6 +318,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         match stage {
             _ if is_input => match stage {
                 Stage::Parameter
+                | Stage::Body
                 | Stage::Start
                 | Stage::Joint
                 | Stage::Definition
@@ -339,11 +357,17 @@ impl<'g, 'd> Scope<'g, 'd> {
                 self.resultants.push((symbol, expression.place(span)));
                 Ok(symbol)
             }
+            _ if self.is_other(name) => Ok(self.graph.symbol(name)),
             _ => {
                 let fault = |_| MeaningError::UnknownName { name: name.to_owned(), known: self.known() };
                 Err(self.error(expression, span, fault))
             }
         }
+    }
+
+    /// Whether `name` is that of a symbol without declaration.
+    fn is_other(&self, name: &str) -> bool {
+        self.others.iter().any(|other| other.symbol_name().as_deref() == Some(name))
     }
 
     /// Whether `name` is a constant of the action.
@@ -387,7 +411,8 @@ impl<'g, 'd> Scope<'g, 'd> {
         let states = document.states.iter().map(|state| &state.name.text);
         let moving = coordinates.chain(quasi_velocities).chain(states);
         let inputs = document.inputs.iter().map(|input| &input.name.text);
-        parameters.chain(inputs).chain(definitions).chain(moving).cloned().collect()
+        let others = self.others.iter().filter_map(|other| other.symbol_name());
+        parameters.chain(inputs).chain(definitions).chain(moving).cloned().chain(others).collect()
     }
 }
 

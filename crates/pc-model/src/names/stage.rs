@@ -5,6 +5,8 @@
 pub(crate) enum Stage {
     /// The value of a parameter may contain the preceding parameters.
     Parameter,
+    /// The value of a function may contain its arguments and parameters.
+    Body,
     /// A start value may contain parameters, and definitions in terms of them.
     Start,
     /// A definition of a quasi-velocity may contain coordinates, t, and velocities x'.
@@ -42,6 +44,7 @@ impl Stage {
     pub(super) fn place(self) -> &'static str {
         match self {
             Stage::Parameter => "the value of a parameter",
+            Stage::Body => "the value of a function",
             Stage::Start => "a start value",
             Stage::Definition => "the definition of a quasi-velocity",
             Stage::Kinematics => "[kinematics]",
@@ -62,6 +65,7 @@ impl Stage {
     pub(super) fn allowed(self) -> &'static str {
         match self {
             Stage::Parameter => "numbers and parameters before it",
+            Stage::Body => "numbers, its arguments and parameters",
             Stage::Start | Stage::Joint => "numbers, parameters and definitions made of them",
             Stage::Definition => "parameters, coordinates, velocities x' and t",
             Stage::Kinematics => "parameters, coordinates, quasi-velocities and t",

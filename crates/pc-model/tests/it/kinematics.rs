@@ -40,6 +40,28 @@ fn a_rounding_error_in_a_definition_does_not_affect_the_velocities() {
     }
 }
 
+/// The speed is no quasi-velocity of the language: the message says where it stands and what to write in its place.
+#[test]
+fn nonlinear_quasi_velocities_are_refused_with_what_to_write() {
+    let help = |variables: &str| {
+        format!(
+            "\n  help: Hamel's nonlinear quasi-velocities are not taken: write a sum of terms linear in the {variables}, with \
+             coefficients of coordinates, parameters and t; observe a nonlinear function in [outputs], hold it by a \
+             constraint with `kind = \"nonlinear\"`, or give it in [states] by its rate"
+        )
+    };
+    let text = "[coordinates]\nx = 1.0\n[quasi_velocities]\nv = { is = \"sqrt(x'^2 + 1)\", start = 1 }\n\
+                [lagrangian]\nkinetic = \"x'^2/2\"\n";
+    let expected = "m.toml:4:13: [quasi_velocities] v.is: `sqrt(x'^2 + 1)` is not affine in the velocities\n    \
+                    v = { is = \"sqrt(x'^2 + 1)\", start = 1 }\n                \
+                    ^^^^^^^^^^^^^^";
+    assert_eq!(error(text).to_string(), expected.to_owned() + &help("velocities"));
+    let text = "[coordinates]\nx = 1.0\n[quasi_velocities]\nv = 1\n[kinematics]\nx = \"v^2\"\n\
+                [lagrangian]\nkinetic = \"x'^2/2\"\n";
+    let expected = "m.toml:6:6: [kinematics] x: `v^2` is not affine in the quasi-velocities\n    x = \"v^2\"\n         ^^^";
+    assert_eq!(error(text).to_string(), expected.to_owned() + &help("quasi-velocities"));
+}
+
 /// Kinematics that are linear for each sign only: the second derivatives vanish, but there is no matrix b.
 #[test]
 fn kinematics_with_a_kink_are_refused() {

@@ -9,6 +9,7 @@ mod definitions_under_constraints;
 mod document;
 mod drawing;
 mod events;
+mod functions;
 mod inputs;
 mod jumps;
 mod kinematics;

@@ -106,6 +106,11 @@ impl<'g> Voronets<'g> {
         self.dependent.iter().map(|&r| self.coordinates()[r]).collect()
     }
 
+    /// The symbols of the n − l velocities ẋ_r for which the constraints are solved.
+    pub fn solved_velocities(&self) -> Vec<Expr<'g>> {
+        self.solved.iter().map(|&(velocity, _)| velocity).collect()
+    }
+
     /// α_ri, (n − l) × l.
     pub fn coefficients(&self) -> &Matrix<Expr<'g>> {
         &self.coefficients

@@ -21,11 +21,17 @@ pub enum Form {
     Orthonormal,
     /// Equations for quasi-velocities given on the command line.
     Hamel,
+    /// Lagrange's expressions along the independent quasi-velocities.
+    Maggi,
+    /// Active forces and forces of inertia along the independent quasi-velocities.
+    Kane,
+    /// Derivatives of Gibbs' function, the energy of the accelerations, in the independent quasi-velocities.
+    GibbsAppell,
 }
 
 impl Form {
     /// All forms.
-    pub const ALL: [Form; 8] = [
+    pub const ALL: [Form; 11] = [
         Form::Poincare,
         Form::Canonical,
         Form::Lagrange,
@@ -34,9 +40,12 @@ impl Form {
         Form::LiePoisson,
         Form::Orthonormal,
         Form::Hamel,
+        Form::Maggi,
+        Form::Kane,
+        Form::GibbsAppell,
     ];
 
-    /// The variables of the state in this form; none for the forms in velocities, which serve only for
+    /// The variables of the state in this form; none for the forms that serve only for
     /// printing.
     pub fn variables(self) -> Option<Variables> {
         Some(match self {
@@ -46,7 +55,8 @@ impl Form {
             Form::LiePoisson => Variables::ReducedMomenta,
             Form::Orthonormal => Variables::Orthonormal,
             Form::Hamel => Variables::Given,
-            Form::Lagrange | Form::Voronets => return None,
+            Form::Voronets => Variables::IndependentVelocities,
+            Form::Lagrange | Form::Maggi | Form::Kane | Form::GibbsAppell => return None,
         })
     }
 
@@ -59,7 +69,9 @@ impl Form {
     pub fn name(self) -> &'static str {
         match self {
             Form::Lagrange => "lagrange",
-            Form::Voronets => "voronets",
+            Form::Maggi => "maggi",
+            Form::Kane => "kane",
+            Form::GibbsAppell => "gibbs-appell",
             other => other.variables().map_or("", Variables::name),
         }
     }
@@ -74,6 +86,7 @@ impl From<Variables> for Form {
             Variables::ReducedMomenta => Form::LiePoisson,
             Variables::Orthonormal => Form::Orthonormal,
             Variables::Given => Form::Hamel,
+            Variables::IndependentVelocities => Form::Voronets,
         }
     }
 }

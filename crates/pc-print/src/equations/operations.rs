@@ -11,6 +11,8 @@ pub struct Operations {
     pub free: Cost,
     /// The cost with parameters replaced by their numbers.
     pub bound: Cost,
+    /// The functions without a value, which are counted as two waves each.
+    pub undetermined: Vec<String>,
 }
 
 impl Operations {
@@ -61,7 +63,8 @@ impl Operations {
         let substituted: Vec<_> = numbers.iter().map(|&(symbol, value)| (symbol, value.into())).collect();
         let substituted = Program::new(graph, &inputs, &graph.substitute(rates, &substituted))?;
         let bound = [substituted.cost(), folded.cost()].into_iter().min_by_key(Cost::total);
-        Ok(Operations { bound: bound.unwrap_or_default(), free: free.cost() })
+        let undetermined = graph.undetermined_in(rates);
+        Ok(Operations { bound: bound.unwrap_or_default(), free: free.cost(), undetermined })
     }
 }
 
@@ -71,9 +74,13 @@ fn rates_of_states<'g>(system: &System<'g>) -> Vec<Expr<'g>> {
 }
 
 impl Operations {
-    /// One line of text for free parameters and one for bound ones.
+    /// One line of text for free parameters and one for bound ones, and one on functions without a value.
     pub fn lines(&self) -> Vec<String> {
-        vec![counted("parameters free ", &self.free), counted("parameters bound", &self.bound)]
+        let both = [counted("parameters free ", &self.free), counted("parameters bound", &self.bound)];
+        let names = self.undetermined.join(", ");
+        let waves =
+            (!names.is_empty()).then(|| format!("with two sines or cosines for each call of {names}"));
+        both.into_iter().chain(waves).collect()
     }
 }
 

@@ -10,9 +10,7 @@ use pc_model::Assembly;
 use pc_nonholo::ConstraintKind;
 
 use crate::equations::derived::Derived;
-
-/// Equations with up to this many nodes are multiplied out even if they become longer.
-const SMALL: usize = 60;
+use crate::equations::principle::{ForceSheet, MaggiSheet, Principle, SMALL, shorter};
 
 /// The contents of a page of equations of motion.
 #[derive(Clone, Debug)]
@@ -43,11 +41,13 @@ pub struct Sheet<'p> {
     pub energy_remark: Option<&'static str>,
     /// Each reaction with its expression.
     pub reactions: Vec<(Expr<'p>, Expr<'p>)>,
+    /// Each velocity with the force of the reactions on it.
+    pub reaction_forces: Vec<(Expr<'p>, Expr<'p>)>,
     /// The definitions that the model makes.
     pub definitions: Vec<Given<'p>>,
 }
 
-/// The equations of motion in one of two kinds of variables.
+/// The equations of motion in one of two kinds of variables, or by one of the principles of mechanics.
 #[derive(Clone, Debug)]
 pub enum Balance<'p> {
     /// M η̇ = r.
@@ -77,6 +77,10 @@ pub enum Balance<'p> {
         /// r as sums of products of momenta, if it is a polynomial.
         written: Vec<Expr<'p>>,
     },
+    /// Maggi's equations.
+    Maggi(MaggiSheet<'p>),
+    /// Kane's or Gibbs–Appell's equations.
+    Forces(ForceSheet<'p>),
 }
 
 /// The brackets [X_r, X_s] = c_rs^m X_m of the free operators and of X_0, the operator of time.
@@ -109,15 +113,16 @@ impl<'p> Sheet<'p> {
         let equations: &Equations<'g> = &derived.equations;
         let system = equations.system();
         let writing = Writing::new(system, system.quasi_velocities(), page);
-        let right = writing.all(equations.right_hand_side());
-        let written = writing.multiplied_out(&right, equations.written(page));
-        let mass = writing.matrix(equations.mass_matrix());
-        let energy = writing.energy(equations, &mass);
-        let balance = Balance::Velocities {
-            mass,
-            accelerations: system.quasi_velocities().iter().map(|eta| writing.rate(eta)).collect(),
-            written,
-            right,
+        let forces = |balance, gibbs| {
+            Balance::Forces(ForceSheet::of(balance, gibbs, (system, &assembly.system), page))
+        };
+        let (balance, energy) = match &derived.principle {
+            Principle::Poincare => writing.solved(equations),
+            Principle::Maggi(maggi) => {
+                (Balance::Maggi(MaggiSheet::of(maggi, system, page)), writing.one(equations.energy()))
+            }
+            Principle::Kane(balance) => (forces(balance, false), writing.one(equations.energy())),
+            Principle::GibbsAppell(balance) => (forces(balance, true), writing.one(equations.energy())),
         };
         let rates = system.states().iter().map(|&(_, rate)| rate).collect::<Vec<_>>();
         let parts = Parts {
@@ -140,7 +145,7 @@ impl<'p> Sheet<'p> {
         let moving = [system.quasi_velocities(), equations.momenta()].concat();
         let writing = Writing::new(system, &moving, page);
         let right = writing.all(equations.right_hand_side());
-        let written = writing.multiplied_out(&right, equations.written(page));
+        let written = shorter(right.clone(), equations.written(page), page);
         let balance = Balance::Momenta {
             momenta: writing.all(equations.momenta()),
             rates: equations.momenta().iter().map(|y| writing.rate(y)).collect(),
@@ -200,12 +205,14 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
         Matrix::from_rows(matrix.columns(), (0..matrix.rows()).map(row).collect())
     }
 
-    /// The right-hand sides as sums of products if they are polynomials, unless this makes them much longer.
-    fn multiplied_out(&self, right: &[Expr<'p>], written: Vec<Option<Expr<'p>>>) -> Vec<Expr<'p>> {
-        let products: Vec<Expr<'p>> =
-            written.into_iter().zip(right).map(|(written, &right)| written.unwrap_or(right)).collect();
-        let longest = self.page.size(right) * 3 / 2 + SMALL;
-        if self.page.size(&products) > longest { right.to_vec() } else { products }
+    /// The equations M η̇ = r, with their energy.
+    fn solved(&self, equations: &Equations<'g>) -> (Balance<'p>, Expr<'p>) {
+        let right = self.all(equations.right_hand_side());
+        let written = shorter(right.clone(), equations.written(self.page), self.page);
+        let mass = self.matrix(equations.mass_matrix());
+        let energy = self.energy(equations, &mass);
+        let accelerations = self.system.quasi_velocities().iter().map(|eta| self.rate(eta)).collect();
+        (Balance::Velocities { mass, accelerations, right, written }, energy)
     }
 
     /// The energy; if it is long, it is written as ½ M_rs η_r η_s plus the rest, provided that this is shorter,
@@ -260,8 +267,29 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
         let is_nonholonomic = |(_, kind): &(Constraint<'g>, ConstraintKind)| {
             matches!(kind, ConstraintKind::Nonholonomic { .. })
         };
+        let within = Brackets::of(system, vanishing, self.page);
+        if !derived.dependent.is_empty() {
+            return self.along_constraints(derived, &within);
+        }
         let left_out = (is_within || vanishing.is_empty()) && derived.constraints.iter().any(is_nonholonomic);
-        Brackets { left_out, ..Brackets::of(system, vanishing, self.page) }
+        Brackets { left_out, ..within }
+    }
+
+    /// The brackets of the operators ∂/∂x_i + α_ri ∂/∂x_r of Voronets' equations, c_ji^r ∂/∂x_r, in which the operators ∂/∂x_r
+    /// have the names of the ẋ_r.
+    fn along_constraints(&self, derived: &Derived<'g>, within: &Brackets<'p>) -> Brackets<'p> {
+        let free = within.operators.len();
+        let nonzero = derived.coefficients.iter().map(|bracket| Bracket {
+            pair: bracket.pair,
+            components: bracket.components.iter().map(|&(r, c)| (free + r + 1, self.one(c))).collect(),
+        });
+        let dependent = derived.dependent.iter().map(Expr::to_string);
+        Brackets {
+            nonzero: nonzero.collect(),
+            commute: derived.coefficients.is_empty(),
+            operators: within.operators.iter().cloned().chain(dependent).collect(),
+            ..within.clone()
+        }
     }
 
     /// The symbol of a rate.
@@ -288,8 +316,9 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
                 (constraint.name().to_owned(), self.one(derived.vanishing(constraint)), *kind)
             })
             .collect();
-        let reactions = derived.reactions.iter().map(|&(name, value)| (self.one(name), self.one(value)));
-        let changed = derived.quasi_velocities.iter().map(|&(eta, value)| (self.one(eta), self.one(value)));
+        let both = |list: &[(Expr<'g>, Expr<'g>)]| -> Vec<(Expr<'p>, Expr<'p>)> {
+            list.iter().map(|&(name, value)| (self.one(name), self.one(value))).collect()
+        };
         let definitions = assembly.definitions.iter();
         let definitions = definitions
             .map(|(name, value)| Given { name: name.clone(), value: self.one(*value), shorthand: false })
@@ -302,7 +331,7 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
                 .collect(),
             coordinates: self.all(frame.coordinates()),
             quasi_velocities: self.all(system.quasi_velocities()),
-            changed: changed.collect(),
+            changed: both(&derived.quasi_velocities),
             constraints,
             frame: (self.matrix(frame.b()), self.all(frame.b0())),
             rates: self.rates(parts.velocities),
@@ -311,7 +340,8 @@ impl<'a, 'g, 'p> Writing<'a, 'g, 'p> {
             states: with_rates(&states, parts.states),
             energy: parts.energy,
             energy_remark: derived.energy_remark,
-            reactions: reactions.collect(),
+            reactions: both(&derived.reactions),
+            reaction_forces: both(&derived.reaction_forces),
             definitions,
         }
     }

@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 
 use crate::equations::constraints::kind_in_words;
 use crate::equations::operations::Operations;
+use crate::equations::principle::{ForceSheet, InertiaSheet};
 use crate::equations::sheet::{Balance, Bracket, Sheet};
 use crate::layout::layout::Layout;
 
@@ -51,19 +52,17 @@ pub(crate) fn page(
         let constraint = |(name, left, kind): &(String, Expr<'_>, _)| json!({ "name": name, "expression": text.line(*left), "kind": kind_in_words(*kind) });
         put("constraints", sheet.constraints.iter().map(constraint).collect());
     }
+    let is_solved = matches!(sheet.balance, Balance::Velocities { .. });
+    if (is_solved && !sheet.constraints.is_empty()) || !sheet.reactions.is_empty() {
+        put("reactions", text.by_name(&sheet.reactions));
+    }
+    if !sheet.reaction_forces.is_empty() {
+        put("reaction_forces", text.by_name(&sheet.reaction_forces));
+    }
     match &sheet.balance {
         Balance::Velocities { mass, right, .. } => {
-            if !sheet.constraints.is_empty() {
-                let reactions = sheet.reactions.iter();
-                let reactions = reactions.map(|(name, value)| (name.to_string(), text.line(*value)));
-                put("reactions", Value::Object(reactions.collect()));
-            }
             put("mass_matrix", text.rows(&mass.to_rows()));
             put("equations", text.list(right));
-            put("energy", text.line(sheet.energy));
-            if let Some(remark) = sheet.energy_remark {
-                put("energy_remark", json!(remark));
-            }
         }
         Balance::Momenta { momenta, of_velocities, velocities, right, .. } => {
             put("momenta", text.list(momenta));
@@ -75,6 +74,24 @@ pub(crate) fn page(
             let rates: Vec<Expr<'_>> = sheet.rates.iter().map(|&(_, value)| value).collect();
             put("velocities", text.list(&rates));
             put("equations", text.list(right));
+        }
+        Balance::Maggi(maggi) => {
+            put("lagrange_expressions", text.by_name(&maggi.expressions));
+            put("vanishing", text.list(&maggi.sums));
+        }
+        Balance::Forces(forces) => {
+            put("active_forces", text.list(&forces.active));
+            match &forces.inertia {
+                InertiaSheet::Forces(inertia) => put("inertia_forces", text.list(inertia)),
+                InertiaSheet::Gibbs(function) => put("gibbs_function", text.line(*function)),
+            }
+            put("acceleration_terms", text.list(&forces.slopes));
+        }
+    }
+    if !matches!(sheet.balance, Balance::Momenta { .. }) {
+        put("energy", text.line(sheet.energy));
+        if let Some(remark) = sheet.energy_remark {
+            put("energy_remark", json!(remark));
         }
     }
     put("operations", operations.object());
@@ -112,6 +129,10 @@ impl Text {
         expressions.iter().map(|&expression| self.line(expression)).collect()
     }
 
+    fn by_name(&self, named: &[(Expr<'_>, Expr<'_>)]) -> Value {
+        Value::Object(named.iter().map(|(name, value)| (name.to_string(), self.line(*value))).collect())
+    }
+
     fn rows(&self, rows: &[Vec<Expr<'_>>]) -> Value {
         rows.iter().map(|row| self.list(row)).collect()
     }
@@ -140,9 +161,9 @@ impl<'p> Sheet<'p> {
         all.extend(second(&self.states));
         all.extend(second(&self.changed));
         all.extend(self.constraints.iter().map(|&(_, left, _)| left));
+        all.extend(second(&self.reactions).into_iter().chain(second(&self.reaction_forces)));
         match &self.balance {
             Balance::Velocities { mass, right, .. } => {
-                all.extend(second(&self.reactions));
                 all.extend([mass.entries().into_owned(), right.clone(), vec![self.energy]].concat());
             }
             Balance::Momenta { of_velocities, velocities, right, .. } => {
@@ -150,9 +171,25 @@ impl<'p> Sheet<'p> {
                 all.extend([of_velocities.clone(), velocities, vec![self.energy]].concat());
                 all.extend([second(&self.rates), right.clone()].concat());
             }
+            Balance::Maggi(maggi) => {
+                all.extend(second(&maggi.expressions).into_iter().chain(maggi.sums.iter().copied()));
+                all.push(self.energy);
+            }
+            Balance::Forces(forces) => all.extend(forces.expressions().into_iter().chain([self.energy])),
         }
         let given: &[Given<'p>] = if layout.inline { &[] } else { &self.definitions };
         page.names(&all.into_iter().map(Side::Sum).collect::<Vec<_>>(), given, layout.room())
+    }
+}
+
+impl<'p> ForceSheet<'p> {
+    /// All expressions.
+    fn expressions(&self) -> Vec<Expr<'p>> {
+        let inertia = match &self.inertia {
+            InertiaSheet::Forces(inertia) => inertia.clone(),
+            InertiaSheet::Gibbs(function) => vec![*function],
+        };
+        [self.active.clone(), inertia, self.slopes.clone()].concat()
     }
 }
 

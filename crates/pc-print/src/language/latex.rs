@@ -8,7 +8,8 @@ use pc_mech::{Expr, Graph};
 use crate::equations::constraints::kind_in_words;
 use crate::equations::sheet::{Bracket, Sheet};
 use crate::layout::layout::Layout;
-use crate::layout::part::{Heading, Part, Parts, Row};
+use crate::layout::part::{Part, Parts, Row};
+use crate::layout::remark::remark;
 use crate::words::lines::columns;
 
 /// A paragraph with a display for each part of the equations.
@@ -24,14 +25,6 @@ pub(crate) fn page(heading: &str, sheet: &Sheet<'_>, layout: &Layout, page: &Gra
         let _ = write!(text, "\n\\paragraph{{{}.}}{remark}\n{display}\n", part.heading.text());
     }
     text + "\\endgroup\n"
-}
-
-/// The remark that belongs to a part.
-pub(crate) fn remark(sheet: &Sheet<'_>, heading: Heading) -> Option<&'static str> {
-    match heading {
-        Heading::Energy | Heading::Hamiltonian => sheet.energy_remark,
-        _ => None,
-    }
 }
 
 /// The parts, each with its display, except parts that have nothing to display.
@@ -125,6 +118,11 @@ impl<'p> Latex<'_, 'p> {
                 let components = components.iter().map(|&(m, c)| (c, self.operator(m)));
                 Some(self.equation(vec![(left, 8)], self.combination(components)))
             }
+            Row::Symbol { indices, value } => {
+                let [r, s, m] = indices
+                    .map(|s| s.checked_sub(1).map_or("0".to_owned(), |s| self.set.name(&self.operators[s])));
+                Some(self.equation(vec![(format!("\\gamma_{{{r} {s}}}^{{{m}}}"), 4)], self.terms(*value)))
+            }
             Row::Operator { quasi_velocity, components } => {
                 let left = operator_of(quasi_velocity.as_deref().map(|name| self.set.name(name)).as_deref());
                 let components = components
@@ -132,9 +130,14 @@ impl<'p> Latex<'_, 'p> {
                     .map(|&(x, c)| (c, format!("\\frac{{\\partial}}{{\\partial {}}}", self.set.text(x))));
                 Some(self.equation(vec![(left, 3)], self.combination(components)))
             }
-            Row::Force { quasi_velocity, value } => {
-                let left = format!("Q_{{{}}}", self.set.name(quasi_velocity));
+            Row::Force { letter, quasi_velocity, value } => {
+                let left = format!("{}_{{{}}}", letter.replace('*', "^{*}"), self.set.name(quasi_velocity));
                 Some(self.equation(vec![(left, 3)], self.terms(*value)))
+            }
+            Row::PartialVelocity { rate, quasi_velocity, value } => {
+                let (above, below) = (self.set.text(*rate), self.set.text(*quasi_velocity));
+                let left = format!("\\frac{{\\partial {above}}}{{\\partial {below}}}");
+                Some(self.equation(vec![(left, 5)], self.terms(*value)))
             }
             Row::Entry { .. } => None,
         });

@@ -197,15 +197,32 @@ impl<'p> Set<'_, 'p> {
                 let components = components.iter().map(|&(m, c)| (c, self.operator(m)));
                 self.equation(vec![(left, 8)], self.combination(components))
             }
+            Row::Symbol { indices, value } => {
+                let [r, s, m] = indices.map(|s| {
+                    s.checked_sub(1).map_or("<mn>0</mn>".to_owned(), |s| self.set.name(&self.operators[s]))
+                });
+                let left = format!("<msubsup><mi>γ</mi><mrow>{r}{s}</mrow>{m}</msubsup>");
+                self.equation(vec![(left, 4)], self.terms(*value))
+            }
             Row::Operator { quasi_velocity, components } => {
                 let eta = quasi_velocity.as_deref().map(|name| self.set.name(name));
                 let left = operator(eta.as_deref().unwrap_or("<mn>0</mn>"));
                 let components = components.iter().map(|&(x, c)| (c, partial(&self.set.text(x))));
                 self.equation(vec![(left, 3)], self.combination(components))
             }
-            Row::Force { quasi_velocity, value } => {
-                let left = format!("<msub><mi>Q</mi>{}</msub>", self.set.name(quasi_velocity));
+            Row::Force { letter, quasi_velocity, value } => {
+                let name = self.set.name(quasi_velocity);
+                let left = match letter.strip_suffix('*') {
+                    None => format!("<msub><mi>{letter}</mi>{name}</msub>"),
+                    Some(letter) => format!("<msubsup><mi>{letter}</mi>{name}<mo>*</mo></msubsup>"),
+                };
                 self.equation(vec![(left, 3)], self.terms(*value))
+            }
+            Row::PartialVelocity { rate, quasi_velocity, value } => {
+                let (above, below) = (self.set.text(*rate), self.set.text(*quasi_velocity));
+                let left =
+                    format!("<mfrac><mrow><mi>∂</mi>{above}</mrow><mrow><mi>∂</mi>{below}</mrow></mfrac>");
+                self.equation(vec![(left, 5)], self.terms(*value))
             }
             Row::Entry { .. } => Vec::new(),
         });

@@ -8,6 +8,7 @@ use crate::equations::operations::Operations;
 use crate::equations::sheet::{Balance, Bracket, Brackets, Sheet};
 use crate::layout::layout::Layout;
 use crate::layout::part::{Heading, Part, Parts, Row, entry_name};
+use crate::layout::remark::remark;
 use crate::words::lines::{columns, combined};
 
 /// Matrices wider than this, in columns, are written entry by entry.
@@ -81,11 +82,13 @@ impl<'p> Text<'_, 'p> {
     fn rows(&self, part: &Part<'p>) -> Vec<String> {
         match part.heading {
             Heading::Brackets => self.brackets(part),
+            Heading::HamelSymbols => self.symbols(part),
             Heading::MassMatrix => self.mass_matrix(part),
             _ => {
                 let equations: Vec<_> = part.rows.iter().filter_map(|row| self.equation(row)).collect();
                 let others = part.rows.iter().flat_map(|row| self.alone(row));
-                self.layout.aligned(&equations).into_iter().chain(others).collect()
+                let remark = remark(self.sheet, part.heading).map(|remark| format!("({remark})"));
+                self.layout.aligned(&equations).into_iter().chain(others).chain(remark).collect()
             }
         }
     }
@@ -93,6 +96,12 @@ impl<'p> Text<'_, 'p> {
     fn equation(&self, row: &Row<'p>) -> Option<(Vec<String>, Vec<String>)> {
         match row {
             Row::Equation { left, right } => Some((self.written.terms(*left), self.written.terms(*right))),
+            Row::Force { letter, quasi_velocity, value } => {
+                Some((vec![format!("{letter}({quasi_velocity})")], self.written.terms(*value)))
+            }
+            Row::PartialVelocity { rate, quasi_velocity, value } => {
+                Some((vec![format!("∂{rate}/∂{quasi_velocity}")], self.written.terms(*value)))
+            }
             _ => None,
         }
     }
@@ -104,14 +113,13 @@ impl<'p> Text<'_, 'p> {
                 terms.push(format!("= 0   ({})", kind_in_words(*kind)));
                 self.layout.flowed(&format!("{name}: "), &terms)
             }
-            Row::Function { value, .. } => {
-                let remark = self.sheet.energy_remark.map(|remark| format!("({remark})"));
-                self.layout.flowed("", &self.written.terms(*value)).into_iter().chain(remark).collect()
-            }
+            Row::Function { value, .. } => self.layout.flowed("", &self.written.terms(*value)),
             Row::Equation { .. }
             | Row::Bracket(_)
+            | Row::Symbol { .. }
             | Row::Operator { .. }
             | Row::Force { .. }
+            | Row::PartialVelocity { .. }
             | Row::Entry { .. } => Vec::new(),
         }
     }
@@ -119,15 +127,14 @@ impl<'p> Text<'_, 'p> {
     /// The brackets, in terms of the names of the quasi-velocities, with `t` for time; they may have
     /// components along vanishing quasi-velocities.
     fn brackets(&self, part: &Part<'p>) -> Vec<String> {
-        let operators = &self.sheet.brackets.operators;
-        let name = |s: usize| s.checked_sub(1).map_or("t", |s| operators[s].as_str());
         let mut lines: Vec<String> = part
             .rows
             .iter()
             .filter_map(|row| match row {
                 Row::Bracket(Bracket { pair: [r, s], components }) => {
-                    let terms = components.iter().map(|&(m, c)| (self.written.text(c), name(m).to_owned()));
-                    let head = format!("[{}, {}] = ", name(*r), name(*s));
+                    let terms =
+                        components.iter().map(|&(m, c)| (self.written.text(c), self.operator(m).to_owned()));
+                    let head = format!("[{}, {}] = ", self.operator(*r), self.operator(*s));
                     Some(self.layout.flowed(&head, &combined(terms)))
                 }
                 _ => None,
@@ -142,6 +149,25 @@ impl<'p> Text<'_, 'p> {
         } else if self.sheet.brackets.left_out {
             lines.push(format!("({LEFT_OUT})"));
         }
+        lines
+    }
+
+    /// The name of an operator: that of its quasi-velocity, or `t` for X_0.
+    fn operator(&self, s: usize) -> &str {
+        s.checked_sub(1).map_or("t", |s| self.sheet.brackets.operators[s].as_str())
+    }
+
+    fn symbols(&self, part: &Part<'p>) -> Vec<String> {
+        let symbols = part.rows.iter().filter_map(|row| match row {
+            &Row::Symbol { indices, value } => {
+                let [r, s, m] = indices.map(|s| self.operator(s));
+                Some((vec![format!("γ({r}, {s}; {m})")], self.written.terms(value)))
+            }
+            _ => None,
+        });
+        let mut lines = self.layout.aligned(&symbols.collect::<Vec<_>>());
+        lines.push("(γ(r, s; m) = c_rs^m, antisymmetric in r and s)".to_owned());
+        lines.extend(self.sheet.brackets.left_out.then(|| format!("({LEFT_OUT})")));
         lines
     }
 

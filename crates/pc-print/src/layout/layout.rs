@@ -11,11 +11,15 @@ pub struct Layout {
     pub brief: bool,
     /// Whether definitions of the model are written out.
     pub inline: bool,
+    /// Whether all reactions are printed, as formulas and as forces.
+    pub reactions: bool,
+    /// Whether brackets are printed by their coefficients c_rs^m, the symbols γ_rs^m of Boltzmann and Hamel.
+    pub symbols: bool,
 }
 
 impl Default for Layout {
     fn default() -> Layout {
-        Layout { width: 100, brief: false, inline: false }
+        Layout { width: 100, brief: false, inline: false, reactions: false, symbols: false }
     }
 }
 

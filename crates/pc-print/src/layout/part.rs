@@ -4,6 +4,7 @@ use pc_expr::{Given, Names, Side};
 use pc_mech::{Expr, Graph, Matrix};
 use pc_nonholo::ConstraintKind;
 
+use crate::equations::principle::{ForceSheet, InertiaSheet, MaggiSheet};
 use crate::equations::sheet::{Balance, Bracket, Sheet};
 use crate::layout::layout::Layout;
 
@@ -12,6 +13,23 @@ use crate::layout::layout::Layout;
 pub(crate) struct Part<'p> {
     pub(crate) heading: Heading,
     pub(crate) rows: Vec<Row<'p>>,
+}
+
+impl<'p> Part<'p> {
+    /// Writes brackets by their coefficients.
+    fn write_symbols(&mut self) {
+        if self.heading != Heading::Brackets || self.rows.is_empty() {
+            return;
+        }
+        let symbols = self.rows.iter().flat_map(|row| match row {
+            Row::Bracket(Bracket { pair: [r, s], components }) => components
+                .iter()
+                .map(|&(m, value)| Row::Symbol { indices: [*r, *s, m], value })
+                .collect::<Vec<_>>(),
+            _ => Vec::new(),
+        });
+        *self = Part { heading: Heading::HamelSymbols, rows: symbols.collect() };
+    }
 }
 
 /// What a part is about.
@@ -23,14 +41,21 @@ pub(crate) enum Heading {
     Forces,
     Kinematics,
     Brackets,
+    HamelSymbols,
     MassMatrix,
     Momenta,
     QuasiVelocities,
     Hamiltonian,
+    LagrangeExpressions,
+    PartialVelocities,
+    ActiveForces,
+    InertiaForces,
+    GibbsFunction,
     Equations,
     States,
     Energy,
     Reactions,
+    ReactionForces,
 }
 
 impl Heading {
@@ -42,14 +67,21 @@ impl Heading {
             Heading::Forces => "Forces",
             Heading::Kinematics => "Kinematics",
             Heading::Brackets => "Brackets",
+            Heading::HamelSymbols => "Symbols of Boltzmann and Hamel",
             Heading::MassMatrix => "Mass matrix",
             Heading::Momenta => "Momenta",
             Heading::QuasiVelocities => "Quasi-velocities",
             Heading::Hamiltonian => "Hamiltonian",
+            Heading::LagrangeExpressions => "Lagrange's expressions",
+            Heading::PartialVelocities => "Partial velocities",
+            Heading::ActiveForces => "Active forces",
+            Heading::InertiaForces => "Inertia forces",
+            Heading::GibbsFunction => "Gibbs' function",
             Heading::Equations => "Equations",
             Heading::States => "States",
             Heading::Energy => "Energy",
             Heading::Reactions => "Reactions",
+            Heading::ReactionForces => "Reaction forces",
         }
     }
 }
@@ -63,10 +95,14 @@ pub(crate) enum Row<'p> {
     Equation { left: Expr<'p>, right: Expr<'p> },
     /// [X_r, X_s] = Σ c X_m
     Bracket(Bracket<'p>),
+    /// γ_rs^m = value, with the indices r, s, m.
+    Symbol { indices: [usize; 3], value: Expr<'p> },
     /// X_s = Σ b_is ∂/∂x_i, with the name of η_s; for X_0 there is no name.
     Operator { quasi_velocity: Option<String>, components: Vec<(Expr<'p>, Expr<'p>)> },
-    /// Q_s = value, identified by the name of η_s.
-    Force { quasi_velocity: String, value: Expr<'p> },
+    /// The force of this letter along η_s, identified by the name of η_s: Q, F, F* for inertia, R for reactions.
+    Force { letter: &'static str, quasi_velocity: String, value: Expr<'p> },
+    /// ∂ẋ_i/∂η_s = value, with the symbols of ẋ_i and η_s.
+    PartialVelocity { rate: Expr<'p>, quasi_velocity: Expr<'p>, value: Expr<'p> },
     /// An entry M_rs.
     Entry { place: [usize; 2], value: Expr<'p> },
     /// A function with the letter that denotes it.
@@ -81,9 +117,11 @@ impl<'p> Row<'p> {
             Row::Equation { left, right } => vec![Side::Sum(*left), Side::Sum(*right)],
             Row::Bracket(bracket) => bracket.components.iter().map(|&(_, c)| Side::Factor(c)).collect(),
             Row::Operator { components, .. } => components.iter().map(|&(_, c)| Side::Factor(c)).collect(),
-            Row::Force { value, .. } | Row::Entry { value, .. } | Row::Function { value, .. } => {
-                vec![Side::Sum(*value)]
-            }
+            Row::Force { value, .. }
+            | Row::PartialVelocity { value, .. }
+            | Row::Symbol { value, .. }
+            | Row::Entry { value, .. }
+            | Row::Function { value, .. } => vec![Side::Sum(*value)],
         }
     }
 }
@@ -102,6 +140,9 @@ impl<'p> Parts<'p> {
     pub(crate) fn new(sheet: &Sheet<'p>, layout: &Layout, page: &'p Graph, entries: bool) -> Parts<'p> {
         let mut given: Vec<Given<'p>> = if layout.inline { Vec::new() } else { sheet.definitions.clone() };
         let mut parts = sheet.parts(page, entries);
+        if layout.symbols {
+            parts.iter_mut().for_each(Part::write_symbols);
+        }
         if entries {
             given.extend(sheet.entry_names());
         }
@@ -183,51 +224,82 @@ pub(crate) fn entry_name(sheet: &Sheet<'_>, [r, s]: [usize; 2]) -> String {
     format!("M({}, {})", sheet.quasi_velocities[r], sheet.quasi_velocities[s])
 }
 
+/// The equations `left = right`, one for each pair of different sides.
+fn equations<'p>(sides: impl IntoIterator<Item = (Expr<'p>, Expr<'p>)>) -> Vec<Row<'p>> {
+    let different = sides.into_iter().filter(|(left, right)| left != right);
+    different.map(|(left, right)| Row::Equation { left, right }).collect()
+}
+
+fn zip<'p>(left: &[Expr<'p>], right: &[Expr<'p>]) -> Vec<Row<'p>> {
+    equations(left.iter().copied().zip(right.iter().copied()))
+}
+
+fn part<'p>(heading: Heading, rows: Vec<Row<'p>>) -> Part<'p> {
+    Part { heading, rows }
+}
+
 impl<'p> Sheet<'p> {
     fn parts(&self, page: &'p Graph, entries: bool) -> Vec<Part<'p>> {
-        let part = |heading, rows| Part { heading, rows };
-        let equations = |sides: &[(Expr<'p>, Expr<'p>)]| -> Vec<Row<'p>> {
-            let different = sides.iter().filter(|(left, right)| left != right);
-            different.map(|&(left, right)| Row::Equation { left, right }).collect()
-        };
-        let zip = |left: &[Expr<'p>], right: &[Expr<'p>]| -> Vec<(Expr<'p>, Expr<'p>)> {
-            left.iter().copied().zip(right.iter().copied()).collect()
-        };
         let constraints = self.constraints.iter().map(|(name, left, kind)| {
             let (name, left, kind) = (name.clone(), *left, *kind);
             Row::Constraint { name, left, kind }
         });
-        let brackets = self.brackets.nonzero.iter();
-        let brackets = brackets.map(|bracket| Row::Bracket(bracket.clone()));
         let mut parts = vec![
             part(Heading::Constraints, constraints.collect()),
-            part(Heading::QuasiVelocities, equations(&self.changed)),
-            part(Heading::Kinematics, equations(&self.rates)),
-            part(Heading::Brackets, brackets.collect()),
+            part(Heading::QuasiVelocities, equations(self.changed.iter().copied())),
+            part(Heading::Kinematics, equations(self.rates.iter().copied())),
         ];
+        let brackets = self.brackets.nonzero.iter();
+        let brackets =
+            part(Heading::Brackets, brackets.map(|bracket| Row::Bracket(bracket.clone())).collect());
+        let states = part(Heading::States, equations(self.states.iter().copied()));
         match &self.balance {
             Balance::Velocities { mass, accelerations, written, .. } => {
+                parts.push(brackets);
                 if entries {
                     parts.push(part(Heading::MassMatrix, entry_rows(mass)));
                 }
                 let left = (0..mass.rows())
                     .map(|r| page.sum(mass.nonzero(r).map(|(s, entry)| entry * accelerations[s])));
-                parts.push(part(Heading::Equations, equations(&zip(&left.collect::<Vec<_>>(), written))));
-                parts.push(part(Heading::States, equations(&self.states)));
-                parts.push(part(Heading::Energy, vec![Row::Function { letter: "E", value: self.energy }]));
-                parts.push(part(Heading::Reactions, equations(&self.reactions)));
+                parts.push(part(Heading::Equations, zip(&left.collect::<Vec<_>>(), written)));
+                parts.push(states);
+                parts.extend(self.energy_and_reactions());
             }
             Balance::Momenta { momenta, rates, of_velocities, written, .. } => {
-                parts.push(part(Heading::Momenta, equations(&zip(momenta, of_velocities))));
+                parts.push(brackets);
+                parts.push(part(Heading::Momenta, zip(momenta, of_velocities)));
                 parts.push(part(
                     Heading::Hamiltonian,
                     vec![Row::Function { letter: "H", value: self.energy }],
                 ));
-                parts.push(part(Heading::Equations, equations(&zip(rates, written))));
-                parts.push(part(Heading::States, equations(&self.states)));
+                parts.push(part(Heading::Equations, zip(rates, written)));
+                parts.push(states);
+            }
+            Balance::Maggi(maggi) => {
+                parts.extend(maggi.parts());
+                parts.push(states);
+                parts.extend(self.energy_and_reactions());
+            }
+            Balance::Forces(forces) => {
+                parts.extend(forces.parts(self));
+                parts.push(states);
+                parts.extend(self.energy_and_reactions());
             }
         }
         parts
+    }
+
+    fn energy_and_reactions(&self) -> [Part<'p>; 3] {
+        let forces = self.reaction_forces.iter().map(|&(eta, value)| Row::Force {
+            letter: "R",
+            quasi_velocity: eta.to_string(),
+            value,
+        });
+        [
+            part(Heading::Energy, vec![Row::Function { letter: "E", value: self.energy }]),
+            part(Heading::Reactions, equations(self.reactions.iter().copied())),
+            part(Heading::ReactionForces, forces.collect()),
+        ]
     }
 
     /// Names for the entries of the mass matrix, which is printed.
@@ -242,11 +314,54 @@ impl<'p> Sheet<'p> {
         entries.collect()
     }
 
+    /// The entries of b that are not zero.
+    fn partial_velocities(&self) -> Vec<Row<'p>> {
+        let (b, eta) = (&self.frame.0, &self.quasi_velocities);
+        let row = |i: usize| {
+            let rate = self.rates[i].0;
+            b.nonzero(i).map(move |(s, value)| Row::PartialVelocity { rate, quasi_velocity: eta[s], value })
+        };
+        (0..b.rows()).flat_map(row).collect()
+    }
+
     /// Names for the quasi-velocities as functions of the momenta.
     fn velocity_names(&self) -> Vec<Given<'p>> {
         let Balance::Momenta { velocities: Some(values), .. } = &self.balance else { return Vec::new() };
         let names = self.quasi_velocities.iter().map(Expr::to_string);
         names.zip(values).map(|(name, &value)| Given { name, value, shorthand: true }).collect()
+    }
+}
+
+impl<'p> MaggiSheet<'p> {
+    fn parts(&self) -> Vec<Part<'p>> {
+        let sums = self.sums.iter().map(|&sum| (sum, Expr::ZERO));
+        vec![
+            part(Heading::LagrangeExpressions, equations(self.expressions.iter().copied())),
+            part(Heading::Equations, equations(sums)),
+        ]
+    }
+}
+
+impl<'p> ForceSheet<'p> {
+    fn parts(&self, sheet: &Sheet<'p>) -> Vec<Part<'p>> {
+        let forces = |letter: &'static str, values: &[Expr<'p>]| -> Vec<Row<'p>> {
+            let along = sheet.quasi_velocities.iter().zip(values);
+            along.map(|(eta, &value)| Row::Force { letter, quasi_velocity: eta.to_string(), value }).collect()
+        };
+        let equations = part(Heading::Equations, zip(&self.slopes, &self.active));
+        match &self.inertia {
+            InertiaSheet::Forces(inertia) => vec![
+                part(Heading::PartialVelocities, sheet.partial_velocities()),
+                part(Heading::ActiveForces, forces("F", &self.active)),
+                part(Heading::InertiaForces, forces("F*", inertia)),
+                equations,
+            ],
+            &InertiaSheet::Gibbs(value) => vec![
+                part(Heading::GibbsFunction, vec![Row::Function { letter: "S", value }]),
+                part(Heading::ActiveForces, forces("Q", &self.active)),
+                equations,
+            ],
+        }
     }
 }
 

@@ -14,6 +14,7 @@ use crate::language::text::{LEFT_OUT, no_brackets};
 use crate::layout::format::Page;
 use crate::layout::layout::Layout;
 use crate::layout::part::{Heading, Part, Parts, Row};
+use crate::layout::remark::remark;
 use crate::page::page::{page, sheet_of};
 use crate::theory;
 use crate::theory::description::{Section, Side, Theory};
@@ -122,7 +123,11 @@ pub fn displayed_system(assembly: &Assembly<'_>, layout: &Layout) -> Result<Vec<
         rows.push(Row::Function { letter: "L", value: one(lagrangian) });
         parts.push(Part { heading: Heading::Lagrangian, rows });
         let forces = system.quasi_velocities().iter().zip(system.forces()).filter(|(_, q)| !q.is_zero());
-        let forces = forces.map(|(eta, &q)| Row::Force { quasi_velocity: eta.to_string(), value: one(q) });
+        let forces = forces.map(|(eta, &q)| Row::Force {
+            letter: "Q",
+            quasi_velocity: eta.to_string(),
+            value: one(q),
+        });
         parts.push(Part { heading: Heading::Forces, rows: forces.collect() });
     }
     let given: Vec<Given<'_>> = assembly
@@ -245,7 +250,7 @@ fn notes(sheet: &Sheet<'_>, part: &Part<'_>) -> Vec<String> {
             let left_out = sheet.brackets.left_out.then(|| LEFT_OUT.to_owned());
             algebra(&sheet.brackets).into_iter().chain(left_out).collect()
         }
-        heading => latex::remark(sheet, heading).map(str::to_owned).into_iter().collect(),
+        heading => remark(sheet, heading).map(str::to_owned).into_iter().collect(),
     }
 }
 

@@ -28,6 +28,7 @@ pub fn page(
     assembly: &Assembly<'_>,
 ) -> Result<String, ModelError> {
     let (name, derived) = Derived::new(form, assembly)?;
+    let derived = if layout.reactions { derived.with_reactions(form, assembly)? } else { derived };
     let paper = assembly.system.graph().page(Folding::Structural);
     let system = derived.equations.system();
     if let (Form::Poincare, Some(tree)) = (form, system.large_tree()) {

@@ -1,11 +1,15 @@
 //! The Hamilton–Jacobi equation, and what is found about an action that the text gives.
 
-use pc_analysis::ProposedAction;
-use pc_mech::{Expr, Identity};
+use pc_analysis::{AnalysisError, Orbit, PoissonBracket, ProposedAction};
+use pc_mech::{Canonical, Expr, Identity};
 
 use crate::theory::basis::Basis;
 use crate::theory::description::{Entry, Section, Side, Verdict};
+use crate::theory::{jacobi, separation};
 use crate::words::words::{short, small};
+
+/// A relation holds at the start if no more than this is left of it.
+const NO_MORE_THAN_ROUNDING: f64 = 1e-12;
 
 /// The section on X_0 S + H(t, x, X_s S) = 0 and the action of the model.
 pub(crate) fn section<'g>(ground: &Basis<'_, 'g>) -> Section<'g> {
@@ -23,25 +27,31 @@ pub(crate) fn section<'g>(ground: &Basis<'_, 'g>) -> Section<'g> {
         Ok(canonical) => canonical,
         Err(why) => return refused(why.clone()),
     };
-    let frame = ground.free.frame();
-    let is_square = !frame.coordinates().is_empty() && frame.rank() == frame.operators();
-    if !is_square {
-        return refused("as many coordinates are needed as quasi-velocities".to_owned());
+    if ground.free.frame().coordinates().is_empty() {
+        return refused("there are no coordinates on which an action could depend".to_owned());
     }
-    let mut entries = equation(ground);
+    // With multipliers, H of the independent momenta is seldom short enough to be read.
+    let mut entries = if ground.is_unbound() || action.is_some() { equation(ground) } else { Vec::new() };
+    entries.extend(separation::entry(ground, canonical));
     let Some(action) = action else { return section(entries) };
     let constants: Vec<Expr<'_>> = action.constants.iter().map(|&(constant, _)| constant).collect();
     let mut near = ground.near.clone();
     near.centre.extend(action.constants.iter().copied());
     let said = Entry::formula(Side::letter("S"), Side::of(action.value)).named("action");
-    let checked = match ProposedAction::check(canonical, action.value, &constants, &near) {
-        Ok(checked) => checked,
-        Err(error) => {
-            entries.push(said.with(Verdict::Open).say(error.to_string()));
+    let orbit = orbit(ground);
+    let checked = orbit.as_ref().map_err(ToString::to_string).and_then(|orbit| {
+        ProposedAction::check_on(canonical, action.value, &constants, (orbit, &near))
+            .map_err(|error| error.to_string())
+    });
+    let (orbit, checked) = match (orbit, checked) {
+        (Ok(orbit), Ok(checked)) => (orbit, checked),
+        (_, checked) => {
+            let why = checked.err().unwrap_or_default();
+            entries.push(said.with(Verdict::Open).say(why));
             return section(entries);
         }
     };
-    let size = canonical.momenta().len();
+    let size = orbit.dimension();
     let complete = match checked.rank {
         rank if rank == size => format!("complete: ∂(X_s S)/∂α has rank {rank} of {size}"),
         rank => format!("not complete: ∂(X_s S)/∂α has rank {rank} of {size}"),
@@ -57,7 +67,46 @@ pub(crate) fn section<'g>(ground: &Basis<'_, 'g>) -> Section<'g> {
         said.formulas.push((left, Side::of(checked.remainder)));
     }
     entries.push(said.say(complete));
+    entries.extend(on_orbit(ground, canonical, &orbit));
+    entries.extend(jacobi::entries(ground, canonical, &checked, &action.constants));
     section(entries)
+}
+
+/// The orbit of the frame through the start, given by conditions on positions, integrals of the text or Casimirs.
+fn orbit<'g>(ground: &Basis<'_, 'g>) -> Result<Orbit<'g>, AnalysisError> {
+    let system = &ground.free;
+    let of_text = ground.assembly.held_positions().into_iter().chain(system.integrals().iter().cloned());
+    let mut functions: Vec<Expr<'g>> = of_text.map(|(_, f)| f).collect();
+    if let Ok(orbit) = Orbit::through(system, &functions, &ground.near.centre) {
+        return Ok(orbit);
+    }
+    functions.extend(PoissonBracket::new(system).casimirs(2));
+    Orbit::through(system, &functions, &ground.near.centre)
+}
+
+/// The orbit to which the action is restricted, and the relations of the momenta y_s = X_s S on it.
+fn on_orbit<'g>(ground: &Basis<'_, 'g>, canonical: &Canonical<'g>, orbit: &Orbit<'g>) -> Vec<Entry<'g>> {
+    let of_invariant = |&(f, c): &(Expr<'g>, f64)| (Side::of(f), Side::of(Expr::from(c)));
+    let mut entries = Vec::new();
+    if !orbit.invariants().is_empty() {
+        let formulas = orbit.invariants().iter().map(of_invariant).collect();
+        entries.push(Entry { formulas, ..Entry::default() }.named("on the orbit"));
+    }
+    let graph = ground.free.graph();
+    let known: Vec<_> =
+        canonical.momenta().iter().copied().zip(canonical.momenta_of_velocities().iter().copied()).collect();
+    for relation in Orbit::relations(&ground.free) {
+        let at_start = graph.evaluate(&graph.substitute(&[relation], &known), &ground.near.centre);
+        let value = at_start.map_or(f64::NAN, |values| values[0]);
+        let zero = Side::symbol("0", "0", "<mn>0</mn>");
+        let start = match value.abs() <= NO_MORE_THAN_ROUNDING {
+            true => "as at the start".to_owned(),
+            false => format!("at the start it is {}", short(value, 6)),
+        };
+        let entry = Entry::formula(Side::of(relation), zero).named("the motions of S");
+        entries.push(entry.say(format!("for y_s = X_s S, since X_1, …, X_k are dependent; {start}")));
+    }
+    entries
 }
 
 /// The residual in words, if the action is not proved.

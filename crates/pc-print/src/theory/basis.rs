@@ -2,7 +2,7 @@
 
 use pc_analysis::AnalysisError;
 use pc_mech::{Canonical, Equations, MechError, Neighbourhood, System};
-use pc_model::{Assembly, ConstraintFormulation, ModelError};
+use pc_model::{Assembly, ConstraintFormulation, Model, ModelError};
 use pc_nonholo::Constrained;
 
 /// A model with its equations in independent quasi-velocities.
@@ -17,10 +17,12 @@ pub(crate) struct Basis<'a, 'g> {
     pub(crate) canonical: Result<Canonical<'g>, String>,
     /// The values of time, state and parameters at the start.
     pub(crate) near: Neighbourhood<'g>,
+    /// The end of the run of the model, if the text gives it.
+    pub(crate) t_end: Option<f64>,
 }
 
 impl<'a, 'g> Basis<'a, 'g> {
-    pub(crate) fn new(assembly: &'a Assembly<'g>) -> Result<Basis<'a, 'g>, ModelError> {
+    pub(crate) fn new(model: &Model, assembly: &'a Assembly<'g>) -> Result<Basis<'a, 'g>, ModelError> {
         let at = assembly.at_start();
         let free = assembly.free_system()?;
         let canonical = match assembly.constraints.nonlinear() {
@@ -36,6 +38,13 @@ impl<'a, 'g> Basis<'a, 'g> {
             equations: assembly.equations()?,
             constrained: assembly.placed(assembly.constraints.constrained(&at))?,
             near: Neighbourhood { centre },
+            t_end: model
+                .document()
+                .simulation
+                .t_end
+                .as_ref()
+                .map(|t| t.value)
+                .filter(|&t| t > assembly.t_start),
             assembly,
             canonical,
             free,

@@ -49,7 +49,7 @@ pub(crate) fn bracket<'g>(ground: &Basis<'_, 'g>) -> Result<Option<PoissonBracke
 }
 
 /// Whether b_0 = 0, c_0s = 0 and b is independent of time.
-fn is_stationary(system: &System<'_>) -> bool {
+pub(crate) fn is_stationary(system: &System<'_>) -> bool {
     let (frame, structure) = (system.frame(), system.structure());
     let time = frame.time();
     frame.b0().iter().all(|b| b.is_zero())
@@ -179,10 +179,10 @@ fn casimir_entries<'g>(
     let all = format!("rank {rank} of {size}: {corank} independent near almost every point");
     entries.push(match (missing, tried) {
         (0, _) => Entry::words(all),
-        (_, Some(d)) => Entry::words(format!(
-            "{all}; {missing} not found among polynomials of degree up to {d} with rational coefficients"
-        ))
-        .with(Verdict::Open),
+        (_, Some(d)) => {
+            Entry::words(format!("{all}; {missing} not found among polynomials of degree up to {d}"))
+                .with(Verdict::Open)
+        }
         (_, None) => Entry::words(format!("{all}; not looked for: too many variables")).with(Verdict::Open),
     });
     entries

@@ -144,6 +144,21 @@ impl<'g> Side<'g> {
         })
     }
 
+    /// ∂F/∂z of a function that is denoted by a letter.
+    pub(crate) fn slope(letter: &str, z: Expr<'_>) -> Side<'g> {
+        Side::written(|style| {
+            let name = z.display(style);
+            match style {
+                Style::Latex => format!("\\frac{{\\partial {letter}}}{{\\partial {name}}}"),
+                Style::Book | Style::Text => format!("∂{letter}/∂{name}"),
+                Style::MathMl => {
+                    let above = format!("<mrow><mi>∂</mi><mi>{letter}</mi></mrow>");
+                    format!("<mfrac>{above}<mrow><mi>∂</mi>{name}</mrow></mfrac>")
+                }
+            }
+        })
+    }
+
     /// df/dt of a named function.
     pub(crate) fn rate_of(name: &str) -> Side<'g> {
         let plain = format!("d/dt {name}");

@@ -1,7 +1,8 @@
 //! The integrals of the motion, and the fields of displacements to which they belong.
 
 use pc_analysis::{
-    AnsatzSearch, ConservationVerdict, Integral, Integrals, NoetherField, Origin, PolynomialAnsatz,
+    AnsatzSearch, ConservationVerdict, Integral, Integrals, LevelEquation, NoetherField, Origin,
+    PolynomialAnsatz,
 };
 use pc_mech::{Constraint, Equations, Expr, Identity, Multipliers, Neighbourhood, Number, Style, System};
 use pc_model::{Assembly, ConstraintFormulation, Model, ModelError};
@@ -36,17 +37,32 @@ pub fn integrals_of<'g>(
     }
     drop_constraints(&mut integrals, assembly, equations);
     say_what_jumps(&mut integrals, assembly);
+    integrals.judge_on_levels(equations, near, &constraints_of(assembly, equations));
     integrals
 }
 
-/// Drops functions of the constraints on positions, which the ansatz finds again.
+/// Drops functions of the constraints, which the ansatz finds again.
 fn drop_constraints<'g>(integrals: &mut Integrals<'g>, assembly: &Assembly<'g>, equations: &Equations<'g>) {
-    let constraints = assembly.constraints.multipliers().map(Multipliers::constraints).unwrap_or_default();
-    let positions = constraints.iter().filter(|constraint| constraint.is_holonomic(&assembly.system));
-    let positions: Vec<Expr<'g>> = positions.map(Constraint::expression).collect();
-    if !positions.is_empty() {
-        integrals.drop_functions_of(equations.system(), &positions);
+    let constraints = constraints_of(assembly, equations);
+    if !constraints.is_empty() {
+        integrals.drop_functions_of(equations.system(), &constraints);
     }
+}
+
+/// The constraints on positions and on velocities in terms of the velocities in the equations, as far as these do not
+/// satisfy them identically.
+fn constraints_of<'g>(assembly: &Assembly<'g>, equations: &Equations<'g>) -> Vec<Expr<'g>> {
+    let constraints = assembly.constraints.multipliers().map(Multipliers::constraints).unwrap_or_default();
+    let (graph, system) = (assembly.system.graph(), &assembly.system);
+    let positions = constraints.iter().filter(|g| g.is_holonomic(system)).map(Constraint::expression);
+    let velocities = constraints.iter().map(|g| g.velocity(system));
+    let all: Vec<Expr<'g>> = positions.chain(velocities).collect();
+    let (given, free) = (system.quasi_velocities(), equations.system().quasi_velocities());
+    let Ok(values) = assembly.quasi_velocities_of(free) else { return Vec::new() };
+    let known: Vec<(Expr<'g>, Expr<'g>)> = given.iter().copied().zip(values).collect();
+    let mut all = graph.substitute(&all, &known);
+    all.retain(|constraint| constraint.constant().is_none());
+    all
 }
 
 /// Names momenta after their displacements.
@@ -114,7 +130,7 @@ pub(crate) fn section<'g>(
         let constant = Side::symbol("const", "\\text{const}", "<mtext>const</mtext>");
         let formulas = [(Side::of(integral.value), constant)].into_iter().chain(of_rate).collect();
         let dependent = integral.dependent.then(|| "a function of those above".to_owned());
-        let words = words.into_iter().chain(dependent).collect();
+        let words = words.into_iter().chain(where_conserved(integral)).chain(dependent).collect();
         Entry { formulas, words, ..Entry::default() }.named(integral.name.clone()).with(verdict)
     };
     let mut entries: Vec<Entry<'g>> = integrals.list().iter().map(entry).collect();
@@ -130,6 +146,8 @@ fn verdict(integral: &Integral<'_>) -> (Verdict, Option<String>) {
         ConservationVerdict::Conserved => (Verdict::Proved, between),
         ConservationVerdict::ConservedHere => (Verdict::ProvedHere, between),
         ConservationVerdict::BetweenJumps => (Verdict::Proved, Some("where it does not jump".to_owned())),
+        ConservationVerdict::OnLevel { always: true } => (Verdict::Proved, between),
+        ConservationVerdict::OnLevel { always: false } => (Verdict::ProvedHere, between),
         ConservationVerdict::NoFunction => {
             (Verdict::Open, Some("it is not a function of time and state alone".to_owned()))
         }
@@ -144,6 +162,21 @@ fn verdict(integral: &Integral<'_>) -> (Verdict, Option<String>) {
             }
         }
     }
+}
+
+/// The level on which a function is conserved, in words.
+fn where_conserved(integral: &Integral<'_>) -> Option<String> {
+    level_in_words(integral).map(|level| match integral.verdict {
+        ConservationVerdict::OnLevel { .. } => format!("where {level}, as at the start"),
+        _ => format!("conserved where {level} (proved)"),
+    })
+}
+
+/// The equations of the level on which a function is conserved, in words; `None` if there are none.
+pub fn level_in_words(integral: &Integral<'_>) -> Option<String> {
+    let equation = |equation: &LevelEquation<'_>| format!("{} = {}", equation.name, equation.value);
+    let equations: Vec<String> = integral.level.iter().map(equation).collect();
+    (!equations.is_empty()).then(|| equations.join(" and "))
 }
 
 /// The extent of the search by the ansatz, in words.

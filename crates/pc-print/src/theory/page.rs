@@ -6,7 +6,10 @@ use crate::layout::format::Page;
 use crate::theory::basis::Basis;
 use crate::theory::description::{Section, Theory};
 use crate::theory::options::TheoryOptions;
-use crate::theory::{action, brackets, integrals, json, latex, measure, names, routh, steady, text};
+use crate::theory::{
+    action, brackets, canonical_variables, dependent_momenta, dirac, functions, integrals, json, latex,
+    measure, names, poissons_theorem, routh, steady, text,
+};
 use crate::words::visible::{visible, visible_json};
 
 impl<'g> Theory<'g> {
@@ -34,15 +37,20 @@ impl<'g> Theory<'g> {
         assembly: &Assembly<'g>,
         options: &TheoryOptions,
     ) -> Result<Theory<'g>, ModelError> {
-        let ground = Basis::new(assembly)?;
+        let ground = Basis::new(model, assembly)?;
         let bracket = ground.placed(brackets::bracket(&ground))?;
         let found = integrals::found(&ground, model, options)?;
         let sections: Vec<Section<'g>> = vec![
+            functions::section(&ground),
             brackets::momenta(&ground),
             brackets::brackets(&ground, bracket.as_ref()),
+            ground.placed(dependent_momenta::section(&ground))?,
+            ground.placed(dirac::section(&ground))?,
+            canonical_variables::section(&ground, bracket.as_ref(), model, options)?,
             brackets::casimirs(&ground, bracket.as_ref(), options.degree),
             brackets::group_reduction(&ground, options.degree),
             integrals::section(&ground, &found, options),
+            ground.placed(poissons_theorem::section(&ground, bracket.as_ref(), &found.0))?,
             integrals::displacements(&ground, &found.0),
             measure::section(&ground)?,
             measure::multiplier(&ground),
@@ -50,6 +58,35 @@ impl<'g> Theory<'g> {
             steady::section(&ground, &found.0)?,
             routh::section(&ground)?,
         ];
+        Theory::written(model, assembly, sections)
+    }
+
+    /// The verdict on functions as canonical variables, below the momenta of the model: pairs of a name and an expression, as in
+    /// [`TheoryOptions::canonical`].
+    ///
+    /// # Errors
+    /// As for [`of`](Theory::of), and if the model has no Poisson bracket to compare with.
+    pub fn of_canonical_variables(
+        model: &Model,
+        assembly: &Assembly<'g>,
+        proposed: &[(String, String)],
+    ) -> Result<Theory<'g>, ModelError> {
+        let ground = Basis::new(model, assembly)?;
+        let bracket = ground.placed(brackets::bracket(&ground))?;
+        let options = TheoryOptions { canonical: proposed.to_vec(), ..TheoryOptions::default() };
+        let sections = vec![
+            brackets::momenta(&ground),
+            canonical_variables::section(&ground, bracket.as_ref(), model, &options)?,
+        ];
+        Theory::written(model, assembly, sections)
+    }
+
+    /// The sections that have entries, with their formulas written out.
+    fn written(
+        model: &Model,
+        assembly: &Assembly<'g>,
+        sections: Vec<Section<'g>>,
+    ) -> Result<Theory<'g>, ModelError> {
         let sections = sections.into_iter().filter(|section| !section.entries.is_empty()).collect();
         let mut theory = Theory { title: model.title().to_owned(), sections };
         names::write(&mut theory, assembly);

@@ -20,7 +20,9 @@ from chetaev._system import System
 
 
 #: The forms of equations, as ``pc derive --form`` names them.
-FORMS = ("poincare", "canonical", "lagrange", "voronets", "reduced", "lie-poisson", "orthonormal", "hamel")
+FORMS = (
+    "poincare", "canonical", "lagrange", "voronets", "reduced", "lie-poisson", "orthonormal", "hamel", "maggi", "kane", "gibbs-appell"
+)
 
 
 #: The changes to a model before it is derived: each with its default, and how it is read.
@@ -207,8 +209,8 @@ class Model:
         Parameters
         ----------
         form : str, optional
-            ``"poincare"``, ``"canonical"``, ``"lagrange"``, ``"voronets"``, ``"reduced"``, ``"lie-poisson"``, ``"orthonormal"`` or
-            ``"hamel"``; by default the form in the text, or else Poincaré's.
+            ``"poincare"``, ``"canonical"``, ``"lagrange"``, ``"voronets"``, ``"reduced"``, ``"lie-poisson"``, ``"orthonormal"``,
+            ``"hamel"``, ``"maggi"``, ``"kane"`` or ``"gibbs-appell"``; by default the form in the text, or else Poincaré's.
         width : int
             The number of characters that fit on a line.
         inline : bool
@@ -234,8 +236,16 @@ class Model:
     def _form(self, form: str | None) -> str:
         return form or self._core.simulation()["form"] or "poincare"
 
-    def theory(self, *, degree: int = 2, functions: object = (), **settings: Any) -> Theory:
-        """Brackets, Casimir functions, integrals, steady motions and their stability, Routh's reduction.
+    def theory(
+        self,
+        *,
+        degree: int = 2,
+        functions: object = (),
+        canonical: Mapping[str, object] | None = None,
+        **settings: Any,
+    ) -> Theory:
+        """Brackets, Casimir functions, integrals, Hamilton-Jacobi's equation, steady motions and their stability,
+        Routh's reduction.
 
         Parameters
         ----------
@@ -243,11 +253,15 @@ class Model:
             The highest degree in the velocities of the integrals sought.
         functions : sequence of expressions
             Functions of the position by which the coefficients of integrals may be multiplied.
+        canonical : mapping of names to expressions, optional
+            Functions to be tested as canonical variables: new coordinates, then as many new momenta, as functions of
+            coordinates, velocities and momenta ``p_x``.
         **settings
             As for :meth:`system`.
         """
         several = functions if isinstance(functions, (list, tuple)) else [functions]
-        return Theory(self, degree, [str(f) for f in several], settings)
+        proposed = [(name, str(f)) for name, f in (canonical or {}).items()]
+        return Theory(self, degree, [str(f) for f in several], proposed, settings)
 
     def fmu(
         self,
@@ -267,7 +281,7 @@ class Model:
         path : path
             The file to write, whose name becomes that of the model.
         form : str, optional
-            ``"poincare"``, ``"reduced"``, ``"orthonormal"`` or ``"hamel"``.
+            ``"poincare"``, ``"reduced"``, ``"orthonormal"``, ``"voronets"`` or ``"hamel"``.
         version : int
             The version of FMI, 2 or 3.
         solver : str, optional
@@ -372,8 +386,8 @@ class Model:
         Parameters
         ----------
         form : str, optional
-            ``"poincare"``, ``"canonical"``, ``"reduced"``, ``"lie-poisson"``, ``"orthonormal"`` or ``"hamel"``; by default the
-            form in the text, or else Poincaré's.
+            ``"poincare"``, ``"canonical"``, ``"reduced"``, ``"lie-poisson"``, ``"orthonormal"``, ``"voronets"`` or ``"hamel"``;
+            by default the form in the text, or else Poincaré's.
         parameters, start : mapping, optional
             Values that replace those of the text; they can also be set later.
         inputs : mapping, optional

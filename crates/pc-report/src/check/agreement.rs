@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 pub(super) fn lines(outcome: &Result<Agreement, VerifyError>, width: usize) -> Vec<String> {
     match outcome {
         Ok(agreement) => {
-            let more = agreement.not_compared.iter();
+            let more = by_reason(&agreement.not_compared).into_iter();
             let more = more.map(|what| clipped(&format!("not compared: {what}"), width));
             [clipped(&agreement.to_string(), width)].into_iter().chain(more).collect()
         }
@@ -16,6 +16,28 @@ pub(super) fn lines(outcome: &Result<Agreement, VerifyError>, width: usize) -> V
         Err(error) => vec![clipped(&error.to_string(), width)],
     }
 }
+
+/// What was not compared, the pages of equations that share a reason on one line.
+fn by_reason(not_compared: &[String]) -> Vec<String> {
+    let mut lines: Vec<(Vec<&str>, &str)> = Vec::new();
+    for what in not_compared {
+        let page = what.split_once(PRINTED);
+        match page.and_then(|(form, reason)| Some((form, lines.iter_mut().find(|line| line.1 == reason)?))) {
+            Some((form, (forms, _))) => forms.push(form),
+            None => {
+                lines.push(page.map_or((Vec::new(), what.as_str()), |(form, reason)| (vec![form], reason)));
+            }
+        }
+    }
+    let line = |(forms, reason): (Vec<&str>, &str)| match forms.as_slice() {
+        [] => reason.to_owned(),
+        forms => format!("{}{PRINTED}{reason}", forms.join(", ")),
+    };
+    lines.into_iter().map(line).collect()
+}
+
+/// What stands between the name of a form and the reason why its page was not compared.
+const PRINTED: &str = " as printed: ";
 
 /// The first line of a text, cut to this width.
 fn clipped(text: &str, width: usize) -> String {

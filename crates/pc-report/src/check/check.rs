@@ -1,17 +1,17 @@
 //! The properties of a model before it is run.
 
-use pc_analysis::{FrameFacts, Integral, Integrals, SteadySearch};
-use pc_mech::{Equations, Expr, Identity, MechError, Motion, Neighbourhood, System, VectorField};
-use pc_model::{Assembly, ClassifiedConstraint, ConstraintFormulation, Model, ModelError};
+use pc_analysis::{FrameFacts, Integrals, Linearization};
+use pc_mech::{Equations, Expr, Identity, MechError, Neighbourhood, System, VectorField};
+use pc_model::{Assembly, ClassifiedConstraint, Model, ModelError};
 use pc_nonholo::{ConstraintKind, IntegrableCombination, Redundant};
 use pc_print::{
-    Operations, assignments, columns, counted, integrals_of, kind_in_words, labelled, one_line, short, small,
-    wrapped,
+    Operations, assignments, columns, integrals_of, kind_in_words, labelled, one_line, short, small, wrapped,
 };
 use pc_verify::{Agreement, VerifyError};
 use serde_json::{Value, json};
 
 use crate::check::measure::Measure;
+use crate::check::steady::SteadyFinding;
 use crate::check::{agreement, combinations, frame, integrals, steady};
 use crate::remarks::{NEGATIVE_ENERGY, changing_masses, dropped};
 
@@ -37,6 +37,8 @@ pub struct Check<'g> {
     t_start: f64,
     start: Vec<f64>,
     largest_rate: f64,
+    /// The names of the functions without a value.
+    undetermined: Vec<String>,
     pub(super) frame: FrameFacts<'g>,
     /// The constraints, each with its kind.
     constraints: Vec<(String, String)>,
@@ -49,7 +51,7 @@ pub struct Check<'g> {
     start_residual: f64,
     pub(super) integrals: Integrals<'g>,
     measure: Measure<'g>,
-    pub(super) steady: SteadySearch,
+    pub(super) steady: SteadyFinding,
     operations: Operations,
     pub(super) second: Option<Result<Agreement, VerifyError>>,
 }
@@ -102,6 +104,7 @@ impl<'g> Check<'g> {
             t_start: assembly.t_start,
             start: assembly.start.clone(),
             largest_rate: if evaluated { largest_rate } else { f64::NAN },
+            undetermined: assembly.undetermined_functions(),
             frame: FrameFacts::of(system, &near),
             constraints: constraints(assembly),
             classified: assembly.constraints.classified().to_vec(),
@@ -110,7 +113,7 @@ impl<'g> Check<'g> {
             combinations: assembly.placed(assembly.constraints.combinations_found(&assembly.at_start()))?,
             start_residual: start_residual(assembly, &near),
             measure: Measure::of(assembly, &near.centre),
-            steady: steady_motion(assembly, equations, motion, integrals.list()),
+            steady: steady::near_start(assembly, equations, &integrals),
             integrals,
             operations,
             second: None,
@@ -120,6 +123,11 @@ impl<'g> Check<'g> {
     /// The properties, together with the result of the comparison with a second derivation.
     pub fn compared(self, second: Result<Agreement, VerifyError>) -> Check<'g> {
         Check { second: Some(second), ..self }
+    }
+
+    /// The linear theory of the steady motion near the start, if one was found.
+    pub fn steady_motion(&self) -> Option<&Linearization> {
+        steady::linearization(&self.steady)
     }
 
     /// For people.
@@ -151,6 +159,7 @@ impl<'g> Check<'g> {
             [format!("{} of {k}, {brackets}", self.rank)].into_iter().chain(frame::constraints(&self.frame));
         let of_states = if self.states.is_empty() { Vec::new() } else { counted_names("l", &self.states) };
         let mut entries: Vec<(&str, Vec<String>)> = vec![
+            ("functions", self.function_lines()),
             ("coordinates", counted_names("n", &self.coordinates)),
             ("quasi-velocities", counted_names("k", &self.quasi_velocities)),
             ("states", of_states),
@@ -162,21 +171,8 @@ impl<'g> Check<'g> {
             ("constraints", self.constraint_lines()),
             ("mass matrix", self.mass_matrix_lines()),
             ("start", start),
-            (
-                "rates there",
-                vec![format!(
-                    "finite at t = {}, the largest {}",
-                    short(self.t_start, 6),
-                    short(self.largest_rate, 4)
-                )],
-            ),
-            (
-                "operations",
-                vec![
-                    counted("parameters free ", &self.operations.free),
-                    counted("parameters bound", &self.operations.bound),
-                ],
-            ),
+            ("rates there", self.rate_lines()),
+            ("operations", self.operations.lines()),
         ];
         if let Some(second) = &self.second {
             entries.push(("second derivation", agreement::lines(second, WIDTH)));
@@ -194,6 +190,26 @@ impl<'g> Check<'g> {
         entries.push(("steady motion", steady::lines(&self.steady, WIDTH)));
         entries.retain(|(_, lines)| !lines.is_empty());
         entries
+    }
+
+    /// The functions without a value, with what the results say of them.
+    fn function_lines(&self) -> Vec<String> {
+        match self.undetermined.as_slice() {
+            [] => Vec::new(),
+            names => vec![format!("{}: any smooth function, compared for a generic one", names.join(", "))],
+        }
+    }
+
+    /// The rates at the start, which have values if all functions do.
+    fn rate_lines(&self) -> Vec<String> {
+        match self.undetermined.first() {
+            Some(name) => vec![format!("no numbers: `{name}` has no value")],
+            None => vec![format!(
+                "finite at t = {}, the largest {}",
+                short(self.t_start, 6),
+                short(self.largest_rate, 4)
+            )],
+        }
     }
 
     fn mass_matrix_lines(&self) -> Vec<String> {
@@ -261,30 +277,6 @@ pub(super) fn held(residual: f64) -> String {
         Identity::Open { .. } => "open: has no values near the start".to_owned(),
         Identity::Disproved { rest } => format!("disproved: {} of the terms is left", small(rest)),
     }
-}
-
-/// The steady motion near the start of the equations of a model; `motion` is compiled from the equations that
-/// are integrated.
-fn steady_motion<'g>(
-    assembly: &Assembly<'g>,
-    equations: &Equations<'g>,
-    motion: Motion,
-    integrals: &[Integral<'g>],
-) -> SteadySearch {
-    let system = equations.system();
-    if assembly.constraints.nonlinear().is_some() {
-        return SteadySearch::Nonlinear;
-    }
-    let start = assembly.start_of(&system.state());
-    let mut independent = match assembly.constraints.formulation() {
-        ConstraintFormulation::Multipliers(_) => match equations.compile() {
-            Ok(independent) => independent,
-            Err(_) => return SteadySearch::None,
-        },
-        ConstraintFormulation::Free | ConstraintFormulation::Vanishing(_) => motion,
-    };
-    let at = (assembly.t_start, start.as_slice());
-    SteadySearch::near(equations, &mut independent, at, integrals, &assembly.held_positions())
 }
 
 /// The constraints, each with its kind; those that were dropped come last.

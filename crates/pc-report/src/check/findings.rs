@@ -59,7 +59,7 @@ impl Check<'_> {
             count(nonholonomic),
             words(if is_holonomic { "holonomic" } else { "nonholonomic" }),
             count(list.len()),
-            count(list.iter().filter(|integral| integral.is_conserved()).count()),
+            count(list.iter().filter(|integral| integral.is_constant_from_start()).count()),
             words(&steady::verdict(&self.steady)),
             Finding::Number(steady::distance(&self.steady)),
             Finding::Number(second.map_or(f64::NAN, |second| second.error)),

@@ -34,10 +34,16 @@ pub(super) fn holonomic(frame: &FrameFacts<'_>, width: usize) -> Vec<String> {
     }
     let holonomic = frame.holonomy.iter().filter_map(|(name, rate)| match rate {
         QuasiVelocityKind::RateOf(Some(pi)) => Some(format!("{name} = d({})/dt", pi.display(Style::Book))),
-        QuasiVelocityKind::RateOf(None) => Some(format!("{name}, the rate of a function that is not found")),
-        QuasiVelocityKind::RateOfNothing(_) => None,
+        QuasiVelocityKind::RateOf(None) | QuasiVelocityKind::RateOfNothing(_) => None,
     });
-    let lines = wrapped(holonomic, width);
+    let unknown = frame.holonomy.iter().filter(|(_, rate)| matches!(rate, QuasiVelocityKind::RateOf(None)));
+    let unknown: Vec<&str> = unknown.map(|(name, _)| name.as_str()).collect();
+    let unknown = match unknown.as_slice() {
+        [] => None,
+        [one] => Some(format!("{one}, the rate of a function that is not found")),
+        all => Some(format!("{}, the rates of functions that are not found", all.join(", "))),
+    };
+    let lines = wrapped(holonomic.chain(unknown), width);
     if lines.is_empty() && !frame.holonomy.is_empty() { vec!["none".to_owned()] } else { lines }
 }
 

@@ -1,4 +1,4 @@
-//! Compares the matrices A, B, C and D with differences of the rates from a second derivation.
+//! Compares a steady state with a second derivation, and the matrices A, B, C and D with differences of its rates.
 
 use pc_analysis::Linearization;
 use pc_mech::Matrix;
@@ -12,36 +12,79 @@ use crate::observer::Observer;
 /// others.
 const WEIGHTS: [f64; 5] = [1.0, -0.77, 0.59, -0.91, 0.68];
 
-/// Compares the matrices before they are returned: A and C along a direction of all components of the reduced
-/// state, B and D along each input. If this is not possible, the observer is told so.
+/// Compares linearizations before they are returned: the rates, reactions and outputs at their states, A and C along a
+/// direction of all components of the reduced state, B and D along each input. Where this is not possible, the observer
+/// is told so.
+///
+/// All of them have the components of one motion.
 ///
 /// # Errors
 /// [`RunError::Verify`] if the derivations disagree.
 pub(crate) fn compare(
     model: &Model,
     assembly: &Assembly<'_>,
-    linear: &Linearization,
+    all: &[&Linearization],
     observer: &dyn Observer,
 ) -> Result<(), RunError> {
-    if linear.components.is_empty() {
-        return Ok(());
-    }
-    match outcome(model, assembly, linear) {
-        Ok(()) => Ok(()),
-        Err(error @ VerifyError::Disagreement(_)) => Err(RunError::Verify(Box::new(error))),
-        Err(error) => {
-            assembly.within_limits()?;
-            observer.remark(&format!("the matrices are not compared with a second derivation: {error}"));
-            Ok(())
+    let Some(first) = all.first() else { return Ok(()) };
+    let outcomes = match outcomes(model, assembly, (first, all), agrees) {
+        Ok(outcomes) => outcomes,
+        Err(error) => vec![Err(error)],
+    };
+    let count = all.len();
+    let mut missing: Vec<(String, usize)> = Vec::new();
+    for outcome in outcomes {
+        match outcome {
+            Ok(()) => {}
+            Err(error @ VerifyError::Disagreement(_)) => return Err(RunError::Verify(Box::new(error))),
+            Err(error) => {
+                let why = error.to_string();
+                match missing.iter_mut().find(|(known, _)| *known == why) {
+                    Some((_, times)) => *times += 1,
+                    None => missing.push((why, 1)),
+                }
+            }
         }
     }
+    assembly.within_limits()?;
+    for (why, times) in missing {
+        let which = if count == 1 { String::new() } else { format!(" at {times} of {count} states") };
+        observer.remark(&format!("the matrices are not compared with a second derivation{which}: {why}"));
+    }
+    Ok(())
 }
 
-fn outcome(model: &Model, assembly: &Assembly<'_>, linear: &Linearization) -> Result<(), VerifyError> {
-    let (names, _): (Vec<String>, Vec<f64>) = linear.state.iter().cloned().unzip();
+/// Compares the rates, reactions and outputs at the state of one linearization, but not its matrices, for which differences need
+/// to know how large each component is.
+///
+/// # Errors
+/// [`VerifyError`], also where nothing can be compared.
+pub(crate) fn steady_agrees(
+    model: &Model,
+    assembly: &Assembly<'_>,
+    linear: &Linearization,
+) -> Result<(), VerifyError> {
+    outcomes(model, assembly, (linear, &[linear]), state_agrees)?.into_iter().collect()
+}
+
+/// A comparison of one linearization of a model in the variables of a flow.
+type Comparison = fn(&Second, (&Model, &Assembly<'_>), &Flow, &Linearization) -> Result<(), VerifyError>;
+
+fn outcomes(
+    model: &Model,
+    assembly: &Assembly<'_>,
+    (first, all): (&Linearization, &[&Linearization]),
+    compared: Comparison,
+) -> Result<Vec<Result<(), VerifyError>>, VerifyError> {
+    let (names, _): (Vec<String>, Vec<f64>) = first.state.iter().cloned().unzip();
+    let each = |model: &Model, assembly: &Assembly<'_>, flow: &Flow| {
+        let second = Second::new(model, assembly)?;
+        let outcomes = all.iter().map(|linear| compared(&second, (model, assembly), flow, linear));
+        Ok(outcomes.collect())
+    };
     let flow = Flow::new(model, assembly, Variables::QuasiVelocities)?;
     if flow.motion.names() == names {
-        return agrees(model, assembly, &flow, linear);
+        return each(model, assembly, &flow);
     }
     // Constraints that a motion holds by multipliers leave these velocities independent.
     let system = &assembly.system;
@@ -55,33 +98,46 @@ fn outcome(model: &Model, assembly: &Assembly<'_>, linear: &Linearization) -> Re
             let reason = "the motion has other variables".to_owned();
             return Err(VerifyError::NothingCompared { tried: 1, reason });
         }
-        agrees(&chosen, assembly, &flow, linear)
+        each(&chosen, assembly, &flow)
     })
 }
 
-fn agrees(
-    model: &Model,
-    assembly: &Assembly<'_>,
+fn state_agrees(
+    second: &Second,
+    (_, assembly): (&Model, &Assembly<'_>),
     flow: &Flow,
     linear: &Linearization,
 ) -> Result<(), VerifyError> {
-    let second = Second::new(model, assembly)?;
     let state: Vec<f64> = linear.state.iter().map(|&(_, value)| value).collect();
-    slopes(linear).iter().try_for_each(|slope| {
+    second.agrees("poincare", flow, assembly, linear.t, &state).map(drop)
+}
+
+fn agrees(
+    second: &Second,
+    (model, assembly): (&Model, &Assembly<'_>),
+    flow: &Flow,
+    linear: &Linearization,
+) -> Result<(), VerifyError> {
+    state_agrees(second, (model, assembly), flow, linear)?;
+    let state: Vec<f64> = linear.state.iter().map(|&(_, value)| value).collect();
+    if linear.components.is_empty() {
+        return Ok(());
+    }
+    slopes(second, linear).iter().try_for_each(|slope| {
         second.slope_agrees((model, assembly), flow, (linear.t, &state), slope).map(drop)
     })
 }
 
 /// The slopes to compare: first along the state, then along each input.
-fn slopes(linear: &Linearization) -> Vec<Slope> {
+fn slopes(second: &Second, linear: &Linearization) -> Vec<Slope> {
     let Linearization { state_matrix: a, input_matrix: b, output_matrix: c, feedthrough: d, .. } = linear;
     let value =
         |name: &String| linear.state.iter().find(|(known, _)| known == name).map_or(0.0, |&(_, value)| value);
     let weights = WEIGHTS.into_iter().cycle();
     // In parts of each component, so that none of them is a step of many times its size.
-    let size = |value: f64| if value == 0.0 { 1.0 } else { value.abs() };
+    let size = |name: &String| second.size(name, value(name));
     let along: Vec<f64> =
-        linear.components.iter().zip(weights).map(|(name, weight)| weight * size(value(name))).collect();
+        linear.components.iter().zip(weights).map(|(name, weight)| weight * size(name)).collect();
     let mut slopes = vec![Slope {
         name: "the derivative by the state".to_owned(),
         state: times(&linear.extension, &along),

@@ -41,31 +41,26 @@ pub enum LinearError {
         /// Whether a linearization was requested.
         of_linearization: bool,
     },
-    /// A constraint that is not affine in the velocities.
-    #[error(
-        "this is not defined where a constraint is not affine in the velocities: no velocities are independent there"
-    )]
-    Nonlinear,
     /// Newton's method did not converge.
     #[error(
-        "no steady state was found near the start: the rates that should vanish have the norm {} where Newton's method \
+        "no steady state was found near the start: the rates that should vanish {} where Newton's method \
          ended, at {}\n  help: start nearer to one (--set NAME=VALUE), which `pc equilibria` finds for those of rest, hold fewer \
          components (--hold), or take the Jacobian of the start as it is (--at start)",
-        short(*residual, 3),
+        left(*residual),
         listed(state)
     )]
     NotSteady {
-        /// √Σ f_i²
+        /// √Σ f_i², NaN where the rates are not defined.
         residual: f64,
         /// The state at which the method ended.
         state: Vec<(String, f64)>,
     },
     /// Newton's method did not converge for the values to be chosen.
     #[error(
-        "the rates vanish for no values of {} that were found: those that should vanish have the norm {} where Newton's method ended, \
+        "the rates vanish for no values of {} that were found: those that should vanish {} where Newton's method ended, \
          at {}\n  help: leave more inputs or components of the state free, or start nearer",
         free.join(", "),
-        short(*residual, 3),
+        left(*residual),
         listed(state)
     )]
     NotTrimmed {
@@ -128,11 +123,17 @@ pub enum LinearError {
     },
     /// The search found nothing.
     #[error(
-        "no equilibrium was found from {starts} starts{}\n  help: widen the box (--box NAME=FROM..TO), or take more starts (--starts N){}",
+        "no equilibrium was found from {starts} starts{}{}\n  help: {}",
         match converged { 0 => String::new(), n => format!("; {n} led to some outside the box") },
-        match converged {
-            0 => "; where a force drives a coordinate on which nothing depends, there is none in any box",
-            _ => "",
+        match poles {
+            0 => String::new(),
+            n => format!("; {n} led to where the coordinates or the frame are singular and the rates have no derivatives"),
+        },
+        match (converged, poles) {
+            (0, 0) => "widen the box (--box NAME=FROM..TO), or take more starts (--starts N); where a force drives a coordinate on \
+                       which nothing depends, there is none in any box",
+            (_, 0) => "widen the box (--box NAME=FROM..TO), or take more starts (--starts N)",
+            _ => "use coordinates and a frame that are regular there, such as more coordinates under a constraint",
         }
     )]
     NoEquilibrium {
@@ -140,6 +141,8 @@ pub enum LinearError {
         starts: usize,
         /// How many of the starts converged.
         converged: usize,
+        /// How many led to where the rates have no derivatives.
+        poles: usize,
     },
     /// Any other error in the analysis.
     #[error(transparent)]
@@ -175,7 +178,6 @@ impl LinearError {
             | LinearError::Free { .. }
             | LinearError::Box(_) => Category::Request,
             LinearError::DependsOnTime { .. }
-            | LinearError::Nonlinear
             | LinearError::LeafUnknown { .. }
             | LinearError::NotSmooth { .. }
             | LinearError::ReactionsUndetermined(_)
@@ -186,6 +188,14 @@ impl LinearError {
             | LinearError::NoneSteady { .. }
             | LinearError::NoEquilibrium { .. } => Category::Failed,
         }
+    }
+}
+
+/// What is left of rates that should vanish.
+fn left(residual: f64) -> String {
+    match residual.is_finite() {
+        true => format!("have the norm {}", short(residual, 3)),
+        false => "are not defined".to_owned(),
     }
 }
 

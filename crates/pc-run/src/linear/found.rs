@@ -1,17 +1,20 @@
 //! The equilibria in a box, for people and for programs.
 
-use pc_analysis::{Equilibria, EquilibriumSearch, FoundEquilibrium};
+use std::ops::Range;
+
+use pc_analysis::{Eigenvalue, Equilibria, EquilibriumSearch, FoundEquilibrium, Linearization};
 use pc_model::Model;
 use pc_print::{eigenvalues_in_words, labelled, one_line, short, stability_in_words, wrapped};
 use serde_json::{Value, json};
 
 use crate::error::RunError;
 use crate::files::error::FileError;
+use crate::linear::compared;
 use crate::linear::error::LinearError;
 use crate::linear::json::map;
 use crate::linear::linearizable::{Linearizable, placed};
 use crate::linear::output::Contents;
-use crate::linear::text::rounded;
+use crate::linear::text::{in_digits, rounded};
 use crate::observer::Observer;
 use crate::table::csv::{field, header};
 use crate::table::file::TableFile;
@@ -22,6 +25,9 @@ const LABEL: usize = 4;
 
 /// The largest value that Newton's method may leave in place of a zero.
 const ZERO: f64 = 1e-9;
+
+/// The digits of the components of a state, with which it may be given again as a start.
+const DIGITS: usize = 9;
 
 /// Where to look for equilibria.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,14 +49,15 @@ impl Default for Search {
 pub struct Found {
     title: String,
     names: Vec<String>,
-    /// How many of the names are coordinates.
-    places: usize,
+    /// Which of the names are quasi-velocities.
+    velocities: Range<usize>,
     /// The equilibria.
     pub equilibria: Equilibria,
 }
 
 impl Found {
-    /// Looks for the equilibria of a model.
+    /// Looks for the equilibria of a model; if `verify` is set, each is compared with a second derivation: its rates, its
+    /// reactions and its matrices.
     ///
     /// # Errors
     /// [`RunError`], also if none is found.
@@ -62,7 +69,7 @@ impl Found {
     ) -> Result<Found, RunError> {
         let graph = model.graph();
         let mut ground = Linearizable::vouched(model, &graph, verify, observer)?;
-        let integrals = ground.integrals();
+        let conserved = ground.conserved();
         let mut search = EquilibriumSearch::default().starts(wanted.starts);
         for (i, (name, low, high)) in wanted.bounds.iter().enumerate() {
             if wanted.bounds[..i].iter().any(|(known, ..)| known == name) {
@@ -70,25 +77,29 @@ impl Found {
             }
             search = search.within(name, *low, *high);
         }
-        let at = (ground.assembly.t_start, ground.start.as_slice());
-        let found = search.run(&ground.equations, &mut ground.linearizer, at, integrals.list());
+        let at = (ground.assembly.t_start, ground.linear.start.as_slice());
+        let found = search.run(&mut ground.linear.linearizer, at, &conserved);
         ground.assembly.within_limits()?;
         let equilibria = found.map_err(|error| placed(&ground.assembly, error, false))?;
         if equilibria.list.is_empty() {
-            let (starts, converged) = (equilibria.starts, equilibria.converged);
-            return Err(LinearError::NoEquilibrium { starts, converged }.into());
+            let Equilibria { starts, converged, poles, .. } = equilibria;
+            return Err(LinearError::NoEquilibrium { starts, converged, poles }.into());
+        }
+        if verify {
+            let all: Vec<&Linearization> = equilibria.list.iter().map(|one| &one.linearization).collect();
+            compared::compare(model, &ground.assembly, &all, observer)?;
         }
         Ok(Found {
             title: model.title().to_owned(),
-            names: ground.linearizer.names().to_vec(),
-            places: ground.equations.system().frame().coordinates().len(),
+            names: ground.linear.linearizer.names().to_vec(),
+            velocities: ground.linear.linearizer.quasi_velocities(),
             equilibria,
         })
     }
 
     /// The equilibria as text, with a paragraph for each.
     pub fn text(&self) -> String {
-        text(&self.title, &self.names, self.places, &self.equilibria)
+        text(&self.title, &self.names, &self.velocities, &self.equilibria)
     }
 
     /// The equilibria as one JSON object.
@@ -112,24 +123,33 @@ impl Found {
 }
 
 /// The components of a state that are shown: all except the quasi-velocities that vanish.
-fn shown<'a>(names: &'a [String], found: &FoundEquilibrium, places: usize) -> Vec<(&'a str, f64)> {
+fn shown<'a>(
+    names: &'a [String],
+    found: &FoundEquilibrium,
+    velocities: &Range<usize>,
+) -> Vec<(&'a str, f64)> {
     let all = names.iter().zip(&found.state).enumerate();
-    let is_shown = |&(i, (_, value)): &(usize, (&String, &f64))| i < places || value.abs() > ZERO;
+    let is_shown =
+        |&(i, (_, value)): &(usize, (&String, &f64))| !velocities.contains(&i) || value.abs() > ZERO;
     all.filter(is_shown).map(|(_, (name, &value))| (name.as_str(), value)).collect()
 }
 
-/// A paragraph for each equilibrium; `places` is the number of coordinates.
-fn text(title: &str, names: &[String], places: usize, found: &Equilibria) -> String {
+/// A paragraph for each equilibrium.
+fn text(title: &str, names: &[String], velocities: &Range<usize>, found: &Equilibria) -> String {
     let mut text = format!("{}\n", one_line(title));
     for (number, one) in (1..).zip(&found.list) {
-        let values = shown(names, one, places);
-        let values = values.into_iter().map(|(name, value)| format!("{name} = {}", rounded(value)));
+        let values = shown(names, one, velocities);
+        let values = values.into_iter().map(|(name, value)| format!("{name} = {}", in_digits(value, DIGITS)));
         let energy = format!("energy {}", rounded(one.energy));
-        let tolerance = one.motion.tolerance.max(ZERO);
+        let linear = &one.linearization;
         let mut lines = wrapped(values, WIDTH);
-        lines.push(stability_in_words(&one.motion.stability()));
-        let eigenvalues = eigenvalues_in_words(&one.motion.eigenvalues, tolerance);
+        lines.push(stability_in_words(&one.stability));
+        let eigenvalues = eigenvalues_in_words(linear.spectrum.eigenvalues(), 0.0);
         lines.extend(wrapped([energy, "eigenvalues ".to_owned() + &eigenvalues.join(", ")], WIDTH));
+        let outputs = linear.outputs.iter().zip(&linear.output_values);
+        let outputs: Vec<String> =
+            outputs.map(|(name, value)| format!("{name} = {}", rounded(*value))).collect();
+        lines.extend(wrapped(outputs, WIDTH));
         lines.extend(family(one));
         text += &labelled(&format!("{number}:"), LABEL, &lines);
     }
@@ -137,7 +157,8 @@ fn text(title: &str, names: &[String], places: usize, found: &Equilibria) -> Str
         text += &labelled("at", LABEL, &wrapped([format!("any {}", found.anywhere.join(", "))], WIDTH));
     }
     let bounds = found.bounds.iter();
-    let bounds = bounds.map(|(name, low, high)| format!("{name} = {}..{}", short(*low, 4), short(*high, 4)));
+    let bounds =
+        bounds.map(|(name, low, high)| format!("{name} from {} to {}", short(*low, 4), short(*high, 4)));
     let over: Vec<String> = bounds.collect();
     let over = if over.is_empty() { String::new() } else { format!(" over {}", over.join(", ")) };
     let starts = format!(
@@ -146,6 +167,16 @@ fn text(title: &str, names: &[String], places: usize, found: &Equilibria) -> Str
     );
     text += &format!("  {starts}\n");
     text
+}
+
+fn eigenvalues(one: &FoundEquilibrium) -> impl Iterator<Item = &Eigenvalue> {
+    one.linearization.spectrum.eigenvalues().iter()
+}
+
+/// The outputs that do not depend on cyclic coordinates.
+fn outputs(one: &FoundEquilibrium) -> impl Iterator<Item = (&str, f64)> {
+    let Linearization { outputs, output_values, .. } = &one.linearization;
+    outputs.iter().map(String::as_str).zip(output_values.iter().copied())
 }
 
 fn family(one: &FoundEquilibrium) -> Option<String> {
@@ -167,10 +198,10 @@ fn json(title: &str, names: &[String], found: &Equilibria) -> Value {
             "state": map(names.iter().map(String::as_str).zip(one.state.iter().copied())),
             "energy": one.energy,
             "components": one.linearization.components,
-            "eigenvalues": one.motion.eigenvalues.iter().map(|l| [l.real, l.imaginary]).collect::<Vec<_>>(),
-            "first_approximation": one.motion.first_approximation.to_string(),
-            "second_variation": one.motion.second_variation.as_ref().map(|second| second.verdict.to_string()),
-            "verdict": stability_in_words(&one.motion.stability()),
+            "eigenvalues": eigenvalues(one).map(|l| [l.real, l.imaginary]).collect::<Vec<_>>(),
+            "first_approximation": one.linearization.spectrum.verdict().to_string(),
+            "verdict": stability_in_words(&one.stability),
+            "outputs": map(outputs(one)),
             "family": one.family,
             "members": one.members,
         })
@@ -189,23 +220,28 @@ fn json(title: &str, names: &[String], found: &Equilibria) -> Value {
 /// A line for each equilibrium: its state, energy, verdict and family, and the real and imaginary part of
 /// each eigenvalue.
 fn csv(names: &[String], found: &Equilibria) -> String {
-    let count = found.list.iter().map(|one| one.motion.eigenvalues.len()).max().unwrap_or(0);
+    let count = found.list.iter().map(|one| eigenvalues(one).count()).max().unwrap_or(0);
+    let named: Vec<String> =
+        found.list.first().map(|one| one.linearization.outputs.clone()).unwrap_or_default();
     let mut columns = names.to_vec();
-    columns.extend(["energy", "verdict", "family", "members"].map(str::to_owned));
+    columns.push("energy".to_owned());
+    columns.extend(named.iter().cloned());
+    columns.extend(["verdict", "family", "members"].map(str::to_owned));
     columns.extend((1..=count).flat_map(|i| [format!("re{i}"), format!("im{i}")]));
     let mut text = header(&columns) + "\n";
     for one in &found.list {
-        let numbers = one.state.iter().chain([&one.energy]).map(|value| format!("{value:.16e}"));
-        let words = [
-            field(&stability_in_words(&one.motion.stability())),
-            one.family.to_string(),
-            one.members.to_string(),
-        ];
-        let eigenvalues = (0..count).flat_map(|i| {
-            one.motion.eigenvalues.get(i).map_or([f64::NAN; 2], |value| [value.real, value.imaginary])
+        let output = |name: &String| {
+            outputs(one).find(|(known, _)| known == name).map_or(f64::NAN, |(_, value)| value)
+        };
+        let numbers = one.state.iter().copied().chain([one.energy]).chain(named.iter().map(output));
+        let numbers = numbers.map(|value| format!("{value:.16e}"));
+        let words =
+            [field(&stability_in_words(&one.stability)), one.family.to_string(), one.members.to_string()];
+        let parts = (0..count).flat_map(|i| {
+            eigenvalues(one).nth(i).map_or([f64::NAN; 2], |value| [value.real, value.imaginary])
         });
         let row: Vec<String> =
-            numbers.chain(words).chain(eigenvalues.map(|value| format!("{value:.16e}"))).collect();
+            numbers.chain(words).chain(parts.map(|value| format!("{value:.16e}"))).collect();
         text += &row.join(",");
         text.push('\n');
     }

@@ -46,6 +46,7 @@ pub(crate) fn members(linear: &Linearization) -> Map<String, Value> {
         "left_out": pairs(&linear.cyclic),
         "inputs": linear.inputs,
         "outputs": linear.outputs,
+        "output_values": linear.output_values,
         "other_outputs": linear.other_outputs,
         "A": rows(&linear.state_matrix),
         "B": rows(&linear.input_matrix),

@@ -2,13 +2,11 @@
 
 use std::convert::Infallible;
 
-use pc_analysis::{
-    AnalysisError, Integrals, Leaf, Linearization, Linearizer, Stability, SteadySearch, Verdict,
-};
-use pc_mech::{Equations, Expr, Graph, MechError, Neighbourhood};
+use pc_analysis::{AnalysisError, Conserved, Integrals, Linearization, Stability};
+use pc_mech::{Equations, Graph, MechError, Neighbourhood};
 use pc_model::{Assembly, Model, Variables};
 use pc_nonholo::NonholoError;
-use pc_print::integrals_of;
+use pc_print::{LinearModel, integrals_of};
 use pc_verify::Outlet;
 
 use crate::error::RunError;
@@ -21,43 +19,23 @@ use crate::observer::Observer;
 pub(crate) struct Linearizable<'g> {
     pub(crate) assembly: Assembly<'g>,
     pub(crate) equations: Equations<'g>,
-    pub(crate) linearizer: Linearizer,
-    /// The start in the variables of these equations.
-    pub(crate) start: Vec<f64>,
+    pub(crate) linear: LinearModel<'g>,
 }
 
 impl<'g> Linearizable<'g> {
     /// # Errors
     /// [`RunError`] at the place in the file that causes the error.
     pub(crate) fn new(model: &Model, graph: &'g Graph) -> Result<Linearizable<'g>, RunError> {
+        model.require_values()?;
         let assembly = model.assemble(graph)?;
-        if assembly.constraints.nonlinear().is_some() {
-            return Err(LinearError::Nonlinear.into());
-        }
         let equations = assembly.equations()?;
-        let mut leaf = Leaf::of(&assembly.system);
-        leaf.positions = assembly.held_positions().into_iter().map(|(_, f)| f).collect();
-        if leaf.codimension() > 0 {
-            leaf.kept = of_coordinates(&equations, &integrals(&assembly, &equations));
-        }
         let inputs: Vec<&str> =
             model.document().inputs.iter().map(|input| input.name.text.as_str()).collect();
-        let held = assembly
-            .constraints
-            .held()
-            .filter(|held| (0..held.constraints().len()).all(|constraint| held.is_holonomic(constraint)));
-        let linearizer = assembly.stage("the linearization", || {
-            let linearizer = match held {
-                Some(held) => Linearizer::with_multipliers(held, &leaf, &inputs),
-                None => Linearizer::new(&equations, &leaf, &inputs),
-            };
-            linearizer.map_err(|error| placed(&assembly, error, true))
+        let linear = assembly.stage("the linearization", || {
+            let linear = LinearModel::of(&assembly, &equations, || integrals(&assembly, &equations), &inputs);
+            linear.map_err(|error| placed(&assembly, error, true))
         })?;
-        let start = match held {
-            Some(_) => assembly.start.clone(),
-            None => assembly.start_of(&equations.system().state()),
-        };
-        Ok(Linearizable { assembly, equations, linearizer, start })
+        Ok(Linearizable { assembly, equations, linear })
     }
 
     /// As [`new`](Linearizable::new), but also gives the observer remarks on the equations and, if requested, compares the
@@ -89,29 +67,25 @@ impl<'g> Linearizable<'g> {
             return None;
         }
         let names = model.start_names();
-        let state = self.linearizer.names().iter();
+        let state = self.linear.linearizer.names().iter();
         state.map(|x| names.iter().position(|name| name == x)).collect()
     }
 
-    /// The stability of a steady state, as `pc check` judges it: without cyclic coordinates, and using the second
-    /// variation and integrals if the first approximation does not decide. None if the state is not steady.
-    pub(crate) fn stability(&self, linear: &Linearization) -> Option<Stability> {
-        let verdict = linear.spectrum.verdict();
-        if !linear.is_steady || verdict != Verdict::Undecided {
-            return linear.is_steady.then_some(Stability::ByFirstApproximation(verdict));
+    /// The stability of a steady state, judged without cyclic coordinates; none if the state is not steady.
+    ///
+    /// # Errors
+    /// [`AnalysisError`] if the equations are not smooth at the state.
+    pub(crate) fn stability(&mut self, linear: &Linearization) -> Result<Option<Stability>, AnalysisError> {
+        if !linear.is_steady {
+            return Ok(None);
         }
-        let (equations, positions) = (&self.equations, self.assembly.held_positions());
-        let value =
-            |name: String| linear.state.iter().find(|(known, _)| *known == name).map(|&(_, value)| value);
-        let state: Option<Vec<f64>> =
-            equations.system().state().iter().map(|y| value(y.to_string())).collect();
-        let undecided = Stability::Undecided { second_variation: false };
-        let (Some(state), Ok(mut motion)) = (state, equations.compile()) else { return Some(undecided) };
-        let at = (linear.t, state.as_slice());
-        match SteadySearch::near(equations, &mut motion, at, self.integrals().list(), &positions) {
-            SteadySearch::Found(found) => Some(found.stability()),
-            _ => Some(undecided),
-        }
+        let conserved = self.conserved();
+        self.linear.linearizer.stability(linear, &conserved).map(Some)
+    }
+
+    /// The functions of the state that motions keep.
+    pub(crate) fn conserved(&self) -> Conserved<'g> {
+        self.linear.conserved(&self.equations, &self.integrals())
     }
 
     /// The integrals that are given or were found.
@@ -123,21 +97,6 @@ impl<'g> Linearizable<'g> {
 fn integrals<'g>(assembly: &Assembly<'g>, equations: &Equations<'g>) -> Integrals<'g> {
     let centre = assembly.system.parameters().iter().copied().chain(assembly.at_start()).collect();
     integrals_of(assembly, equations, &Neighbourhood { centre }, true)
-}
-
-/// The integrals that are functions of the coordinates alone.
-fn of_coordinates<'g>(equations: &Equations<'g>, integrals: &Integrals<'g>) -> Vec<Expr<'g>> {
-    let system = equations.system();
-    let others: Vec<Expr<'g>> = system
-        .quasi_velocities()
-        .iter()
-        .copied()
-        .chain(system.states().iter().map(|&(z, _)| z))
-        .chain([system.frame().time()])
-        .collect();
-    let conserved =
-        integrals.list().iter().filter(|integral| integral.is_conserved() && !integral.is_energy());
-    conserved.map(|integral| integral.value).filter(|f| !others.iter().any(|&y| f.depends_on(y))).collect()
 }
 
 /// An error of the analysis, located at the place in the file that causes it, if there is one.

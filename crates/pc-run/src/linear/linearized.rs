@@ -1,6 +1,6 @@
 //! The motions near a state, to first order.
 
-use pc_analysis::{Linearization, Stability};
+use pc_analysis::{Linearization, Stability, Trim};
 use pc_model::Model;
 use pc_print::stability_in_words;
 use serde_json::{Map, Value, json};
@@ -11,7 +11,8 @@ use crate::linear::arrays::of_linearization;
 use crate::linear::linearizable::{Linearizable, placed};
 use crate::linear::near::{CyclicChoice, near};
 use crate::linear::output::Contents;
-use crate::linear::state::{At, StateChoice};
+use crate::linear::state::{At, Cyclic, StateChoice};
+use crate::linear::trim::Trimmed;
 use crate::linear::{compared, json, text};
 use crate::observer::Observer;
 use crate::table::array::Array;
@@ -24,6 +25,8 @@ pub struct Linearized {
     title: String,
     parameters: Vec<(String, f64)>,
     at: At,
+    /// The inputs that were chosen; none if all were given.
+    chosen: Vec<(String, f64)>,
     /// The linearization.
     pub linear: Linearization,
     /// The stability, as `pc check` judges it; none if the state is not steady.
@@ -42,20 +45,57 @@ impl Linearized {
         verify: bool,
         observer: &dyn Observer,
     ) -> Result<Linearized, RunError> {
+        Linearized::from(model, None, state, verify, observer)
+    }
+
+    /// Linearizes a model at a state that is steady by the choice of the inputs and components `free`, as
+    /// [`Trimmed::of`] finds them; all others keep their values.
+    ///
+    /// # Errors
+    /// [`RunError`]
+    pub fn trimmed(
+        model: &Model,
+        free: &[String],
+        cyclic: Option<Cyclic>,
+        verify: bool,
+        observer: &dyn Observer,
+    ) -> Result<Linearized, RunError> {
+        let trimmed = Trimmed::of(model, free, verify, observer)?;
+        let state = StateChoice { cyclic, ..StateChoice::default() };
+        Linearized::from(&trimmed.with_inputs(model)?, Some(trimmed.trim), &state, verify, observer)
+    }
+
+    /// The linearization at the chosen state near the start, or at a state and inputs that balance.
+    fn from(
+        model: &Model,
+        trim: Option<Trim>,
+        state: &StateChoice,
+        verify: bool,
+        observer: &dyn Observer,
+    ) -> Result<Linearized, RunError> {
         let graph = model.graph();
         let mut ground = Linearizable::vouched(model, &graph, verify, observer)?;
-        let (t, start) = (ground.assembly.t_start, ground.start.clone());
-        let linear = near(&mut ground.linearizer, t, &start, state, CyclicChoice::OfState)
+        let (t, start) = (ground.assembly.t_start, ground.linear.start.clone());
+        let guess: Vec<f64> = match &trim {
+            Some(trim) => trim.state.iter().map(|&(_, value)| value).collect(),
+            None => start.clone(),
+        };
+        let mut linear = near(&mut ground.linear.linearizer, t, &guess, state, CyclicChoice::OfState)
             .map_err(|error| placed(&ground.assembly, error, true))?;
-        if verify {
-            compared::compare(model, &ground.assembly, &linear, observer)?;
+        if trim.is_some() {
+            let apart = linear.state.iter().zip(&start).map(|((_, value), start)| value - start);
+            linear.distance = apart.fold(0.0, f64::hypot);
         }
-        let stability = ground.stability(&linear);
+        if verify {
+            compared::compare(model, &ground.assembly, &[&linear], observer)?;
+        }
+        let stability = ground.stability(&linear).map_err(|error| placed(&ground.assembly, error, true))?;
         ground.assembly.within_limits()?;
         Ok(Linearized {
             title: model.title().to_owned(),
             parameters: model.parameters().map(|(name, value)| (name.to_owned(), value)).collect(),
             at: state.at,
+            chosen: trim.map(|trim| trim.inputs).unwrap_or_default(),
             linear,
             stability,
         })
@@ -63,7 +103,7 @@ impl Linearized {
 
     /// The linearization as text for people.
     pub fn text(&self) -> String {
-        text::page(&self.title, &self.linear, self.stability.as_ref(), self.at != At::Start)
+        text::page(&self.title, &self.chosen, &self.linear, self.stability.as_ref(), self.at != At::Start)
     }
 
     /// The linearization as one JSON object; docs/linearization.md says what the members are.
@@ -73,6 +113,8 @@ impl Linearized {
         all.insert("model".to_owned(), json!(self.title));
         all.insert("parameters".to_owned(), json::map(parameters));
         all.insert("at".to_owned(), json!(self.at.word()));
+        let chosen = self.chosen.iter().map(|(name, value)| (name.as_str(), *value));
+        all.insert("chosen_inputs".to_owned(), json::map(chosen));
         all.extend(json::members(&self.linear));
         all.insert("stability".to_owned(), json!(self.stability.as_ref().map(stability_in_words)));
         Value::from(all)

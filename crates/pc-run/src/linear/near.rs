@@ -67,7 +67,7 @@ impl Varied {
         Varied {
             t: ground.assembly.t_start,
             state: state.clone(),
-            common: places.map(|places| (Mutex::new(ground.linearizer.clone()), places)),
+            common: places.map(|places| (Mutex::new(ground.linear.linearizer.clone()), places)),
         }
     }
 
@@ -80,8 +80,8 @@ impl Varied {
         let Some((linearizer, places)) = &self.common else {
             let graph = model.graph();
             let mut own = Linearizable::new(model, &graph)?;
-            let start = own.start.clone();
-            let found = near(&mut own.linearizer, self.t, &start, &self.state, CyclicChoice::None);
+            let start = own.linear.start.clone();
+            let found = near(&mut own.linear.linearizer, self.t, &start, &self.state, CyclicChoice::None);
             return found.map_err(|error| placed(&own.assembly, error, true));
         };
         // Each value has its own, on whatever thread it is: what was computed before leaves no trace.
@@ -104,7 +104,7 @@ impl Varied {
             (At::Start, _) | (_, Some(Cyclic::Keep)) => CyclicCoordinates::KeptAtRest,
             (At::Steady | At::Rest, _) => CyclicCoordinates::LeftOut,
         };
-        let found = ground.linearizer.components(self.t, &ground.start, cyclic);
+        let found = ground.linear.linearizer.components(self.t, &ground.linear.start, cyclic);
         found.map_err(|error| placed(&ground.assembly, error, true))
     }
 }

@@ -15,14 +15,23 @@ const LABEL: usize = 13;
 /// The largest value that Newton's method may leave in place of a zero.
 const ZERO: f64 = 1e-9;
 
+/// The digits of inputs that were found, with which they may be given again.
+const DIGITS: usize = 10;
+
 /// The value with six digits; 0 for what Newton's method leaves in place of a zero.
 pub(crate) fn rounded(value: f64) -> String {
-    if value.abs() <= ZERO { "0".to_owned() } else { short(value, 6) }
+    in_digits(value, 6)
 }
 
-/// The whole page; `moved` says whether the state was found by moving away from the start.
+/// The value with this number of digits; 0 for what Newton's method leaves in place of a zero.
+pub(crate) fn in_digits(value: f64, digits: usize) -> String {
+    if value.abs() <= ZERO { "0".to_owned() } else { short(value, digits) }
+}
+
+/// The whole page, with the inputs that were `chosen`; `moved` says whether the state was found by moving away from the start.
 pub(crate) fn page(
     title: &str,
+    chosen: &[(String, f64)],
     linear: &Linearization,
     stability: Option<&Stability>,
     moved: bool,
@@ -32,15 +41,23 @@ pub(crate) fn page(
     let state = linear.state.iter().map(|(name, value)| format!("{name} = {}", rounded(*value)));
     line("state", &wrapped(state, WIDTH));
     line("", &[place(linear, moved)]);
+    if !chosen.is_empty() {
+        let inputs = chosen.iter().map(|(name, value)| format!("{name} = {}", short(*value, DIGITS)));
+        line("inputs", &wrapped(inputs, WIDTH));
+    }
     if !linear.cyclic.is_empty() {
         let rates = linear.cyclic.iter().map(|(name, rate)| format!("{name}' = {}", rounded(*rate)));
         line("left out", &wrapped(rates, WIDTH));
     }
     line("components", &wrapped(linear.components.iter().cloned(), WIDTH));
-    let tolerance = linear.spectrum.tolerance().max(ZERO);
-    line("eigenvalues", &wrapped(eigenvalues_in_words(linear.spectrum.eigenvalues(), tolerance), WIDTH));
+    line("eigenvalues", &wrapped(eigenvalues_in_words(linear.spectrum.eigenvalues(), 0.0), WIDTH));
     if let Some(stability) = stability {
         line("stability", &[stability_in_words(stability)]);
+    }
+    if !linear.outputs.is_empty() {
+        let outputs = linear.outputs.iter().zip(&linear.output_values);
+        let outputs = outputs.map(|(name, value)| format!("{name} = {}", rounded(*value)));
+        line("outputs", &wrapped(outputs, WIDTH));
     }
     modes(&mut text, linear);
     let (y, u, h) = (&linear.components, &linear.inputs, &linear.outputs);
@@ -56,7 +73,10 @@ pub(crate) fn page(
     }
     if !linear.other_outputs.is_empty() {
         let names = linear.other_outputs.join(", ");
-        let _ = writeln!(text, "\nnot among the outputs, for they depend on what is left out: {names}");
+        let _ = writeln!(
+            text,
+            "\nnot among the outputs, for they depend on what is left out or have no derivative here: {names}"
+        );
     }
     match &linear.second_order {
         Ok(second) => {
@@ -96,8 +116,7 @@ fn modes(text: &mut String, linear: &Linearization) {
     let modes = linear.modes.iter().filter(|mode| mode.eigenvalue.imaginary >= 0.0);
     let shown = modes.filter_map(|mode| {
         let vector = mode.vector.as_ref()?;
-        let tolerance = linear.spectrum.tolerance().max(ZERO);
-        let value = eigenvalues_in_words(&[mode.eigenvalue], tolerance).pop()?;
+        let value = eigenvalues_in_words(&[mode.eigenvalue], 0.0).pop()?;
         let parts = linear.components.iter().zip(vector).filter(|(_, (re, im))| re.hypot(*im) > ZERO);
         Some((value, parts.map(|(name, &part)| format!("{name} {}", complex(part))).collect::<Vec<_>>()))
     });

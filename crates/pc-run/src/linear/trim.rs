@@ -1,7 +1,7 @@
 //! A state of rest or steady motion, found by choosing some inputs and components of the state, for people and for programs.
 
 use pc_analysis::{AnalysisError, Trim};
-use pc_model::Model;
+use pc_model::{GivenInput, Model};
 use pc_print::short;
 use serde_json::{Value, json};
 
@@ -33,8 +33,8 @@ impl Trimmed {
     ) -> Result<Trimmed, RunError> {
         let graph = model.graph();
         let mut linearizable = Linearizable::vouched(model, &graph, verify, observer)?;
-        let (t, start) = (linearizable.assembly.t_start, linearizable.start.clone());
-        let trim = linearizable.linearizer.trim(t, &start, free).map_err(|error| match error {
+        let (t, start) = (linearizable.assembly.t_start, linearizable.linear.start.clone());
+        let trim = linearizable.linear.linearizer.trim(t, &start, free).map_err(|error| match error {
             AnalysisError::NoSteadyMotion { residual, state, .. } => {
                 LinearError::NotTrimmed { free: free.to_vec(), residual, state }.into()
             }
@@ -44,6 +44,19 @@ impl Trimmed {
         })?;
         linearizable.assembly.within_limits()?;
         Ok(Trimmed { title: model.title().to_owned(), trim })
+    }
+
+    /// The model with the inputs that were found.
+    ///
+    /// # Errors
+    /// [`LinearError::Free`] if the model is another one, which lacks an input.
+    pub(crate) fn with_inputs(&self, model: &Model) -> Result<Model, LinearError> {
+        let mut held = model.clone();
+        for (name, value) in &self.trim.inputs {
+            let given = held.give_input(name, GivenInput::Constant(*value));
+            given.map_err(|unknown| LinearError::Free { name: unknown.name, known: unknown.known })?;
+        }
+        Ok(held)
     }
 
     /// For people.

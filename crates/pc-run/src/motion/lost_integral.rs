@@ -155,7 +155,7 @@ fn rounding(assembly: &Assembly<'_>, flow: &mut Flow, name: &str, states: &[(f64
     ROUNDINGS * f64::EPSILON * states.iter().map(|(t, y)| size(*t, y)).fold(0.0, f64::max)
 }
 
-/// The names of the integrals of the text that are proved to be conserved everywhere.
+/// The names of the integrals of the text that are proved to be constant along the motion from the start.
 fn proved(assembly: &Assembly<'_>) -> Vec<String> {
     let system = &assembly.system;
     if system.integrals().is_empty() {
@@ -166,6 +166,7 @@ fn proved(assembly: &Assembly<'_>) -> Vec<String> {
     centre.extend(system.state().into_iter().zip(assembly.start.iter().copied()));
     let Ok((equations, _)) = assembly.equations_of(Variables::QuasiVelocities) else { return Vec::new() };
     let integrals = integrals_of(assembly, &equations, &Neighbourhood { centre }, false);
-    let kept = integrals.list().iter().filter(|integral| integral.is_conserved() && !integral.jumps);
+    let kept =
+        integrals.list().iter().filter(|integral| integral.is_constant_from_start() && !integral.jumps);
     kept.map(|integral| integral.name.clone()).collect()
 }

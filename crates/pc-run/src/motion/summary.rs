@@ -57,7 +57,7 @@ pub fn entries(run: &Run) -> Vec<(&'static str, Vec<String>)> {
     }
     line("digits", &run.never_exceeded);
     line("values", &not_finite(run));
-    let dropped = run.dropped.iter().map(|(name, reason)| format!("{name} {reason}"));
+    let dropped = run.dropped.iter().map(|(name, reason)| format!("{name} {reason}: λ_{name} is taken as 0"));
     line("dropped", &dropped.collect::<Vec<_>>());
     if let Some(verification) = &run.verification {
         line("verified", &verification.lines());

@@ -7,9 +7,11 @@ use pc_solve::Occurrence;
 use pc_verify::{Agreement, Jump, Options, Outlet, Second, Slope, VerifyError, verify, vouch};
 
 use crate::error::RunError;
+use crate::linear::compared::steady_agrees;
 use crate::observer::Observer;
 
-/// Finds the properties of a model and compares them with a second derivation.
+/// Finds the properties of a model and compares them with a second derivation: the equations in all forms, and the linear theory
+/// of the steady motion near the start.
 ///
 /// # Errors
 /// [`RunError::Verify`] if the second derivation disagrees; [`RunError::Model`] if something about the model
@@ -20,11 +22,19 @@ pub fn checked<'g>(
     equations: &Equations<'g>,
 ) -> Result<Check<'g>, RunError> {
     let check = Check::new(model, assembly, equations)?;
-    let second = match verify(model, assembly, &Options::default()) {
+    let mut second = match verify(model, assembly, &Options::default()) {
         Err(error @ VerifyError::Disagreement(_)) => return Err(RunError::Verify(Box::new(error))),
         outcome => outcome,
     };
     assembly.within_limits()?;
+    if let (Ok(agreement), Some(steady)) = (&mut second, check.steady_motion()) {
+        match steady_agrees(model, assembly, steady) {
+            Ok(()) => {}
+            Err(error @ VerifyError::Disagreement(_)) => return Err(RunError::Verify(Box::new(error))),
+            Err(error) => agreement.not_compared.push(format!("the steady motion: {error}")),
+        }
+        assembly.within_limits()?;
+    }
     Ok(check.compared(second))
 }
 

@@ -6,7 +6,7 @@ use pc_print::Form;
 
 use crate::comparison::agreement::{Agreement, Passed};
 use crate::comparison::first::First;
-use crate::comparison::printed::{FORMS, is_reduced, printed_name};
+use crate::comparison::printed::{is_reduced, printed_name};
 use crate::comparison::projected::Layout;
 use crate::comparison::second::{LONG, Second};
 use crate::comparison::tolerance::{ORDINARY, TOLERANCE};
@@ -75,7 +75,7 @@ fn compared(
 ) -> Result<Agreement, VerifyError> {
     let second = Second::new(observed, assembly)?;
     let mut agreement = second.nothing_yet();
-    let flow = Flow::new(observed, assembly, Variables::QuasiVelocities)?;
+    let flow = Flow::with_stand_ins(observed, assembly, Variables::QuasiVelocities)?;
     let mut large = Projection::new(flow.clone(), &second);
     let (wholly, states) = (second.wholly(options.states), second.affordable(options.states));
     let page = plain.system.graph().page(Folding::Structural);
@@ -119,7 +119,7 @@ fn others<'g>(
     agreement: &mut Agreement,
 ) -> Vec<First<'g>> {
     let mut firsts = Vec::new();
-    match Flow::new(observed, assembly, Variables::Momenta) {
+    match Flow::with_stand_ins(observed, assembly, Variables::Momenta) {
         Ok(flow) => firsts.push(First::flow("canonical", flow, second, assembly, agreement)),
         Err(error) => agreement.leave_out("canonical", &error.diagnostic().message),
     }
@@ -131,7 +131,7 @@ fn others<'g>(
         {
             continue;
         }
-        match Flow::new(observed, assembly, variables) {
+        match Flow::with_stand_ins(observed, assembly, variables) {
             Ok(flow) => firsts.push(First::flow(variables.name(), flow, second, assembly, agreement)),
             Err(error) => agreement.leave_out(variables.name(), &error.diagnostic().message),
         }
@@ -140,14 +140,17 @@ fn others<'g>(
         Ok(first) => firsts.push(first),
         Err(reason) => agreement.leave_out("emit", &reason),
     }
-    for form in FORMS {
+    for form in Form::ALL {
         match second.too_large_for(form, plain) {
             // Forms that are not integrated by default are compared if that takes little time.
-            Some(reason) if form.variables().is_none_or(Variables::are_own) || form == Form::Hamel => {
+            Some(reason)
+                if form.variables().is_none_or(Variables::are_own)
+                    || matches!(form, Form::Hamel | Form::Voronets) =>
+            {
                 agreement.leave_out(&printed_name(form), reason);
             }
             Some(_) => {}
-            None => firsts.extend(First::printed(form, plain, second, page, agreement)),
+            None => firsts.extend(First::printed((form, false), plain, second, page, agreement)),
         }
     }
     firsts
@@ -160,6 +163,7 @@ fn has_form(variables: Variables, assembly: &Assembly<'_>) -> bool {
         Variables::Given => !assembly.given.is_empty(),
         Variables::Orthonormal => assembly.free_form(variables).is_ok(),
         Variables::QuasiVelocities | Variables::Momenta => true,
+        Variables::IndependentVelocities => assembly.constraints.multipliers().is_some(),
     }
 }
 

@@ -180,15 +180,15 @@ impl<'g> First<'g> {
         Ok(First::comparing("emit", candidates, &[], Some(free), source, agreement))
     }
 
-    /// The printed equations of a form, prepared for the comparison.
+    /// The printed equations of a form, with all reactions if `reactions`, prepared for the comparison.
     pub(crate) fn printed(
-        form: pc_print::Form,
+        (form, reactions): (pc_print::Form, bool),
         assembly: &Assembly<'_>,
         second: &Second,
         page: &'g Graph,
         agreement: &mut Agreement,
     ) -> Option<First<'g>> {
-        let mut printed = Printed::new(form, assembly, page)?;
+        let mut printed = Printed::new((form, reactions), assembly, page)?;
         let name = printed.name();
         let external = assembly.system.external_forces();
         let external: Vec<String> = external.iter().map(|(_, force)| force.to_string()).collect();

@@ -24,7 +24,12 @@ pub(crate) fn natural_size(derived: &Derived, drift: &[f64], quantity: &Quantity
     let moving = largest(&[&derived.place.w, &derived.velocities]);
     let velocity = moving.max(largest(&[drift]));
     let momentum = largest(&[&derived.momenta, &derived.momentum_sizes]);
-    let momentum = if moving > 0.0 { momentum * (velocity / moving) } else { momentum };
+    // At rest the drift is what velocities leave when they cancel.
+    let momentum = if moving > 0.0 {
+        momentum * (velocity / moving)
+    } else {
+        momentum.max(derived.mass_size * velocity)
+    };
     match quantity {
         Quantity::Velocity(_) | Quantity::Column(_) | Quantity::Zero => velocity,
         Quantity::ColumnRate(_) | Quantity::Acceleration(_) => {

@@ -20,6 +20,8 @@ pub enum Outlet {
     Source(Variables),
     /// Equations to print, in this form.
     Page(Form),
+    /// Equations to print, in this form, with all reactions as formulas.
+    PageWithReactions(Form),
 }
 
 /// The number of random states, in addition to the start, at which equations are compared before they are
@@ -48,7 +50,7 @@ impl Second {
         let mut agreement = self.nothing_yet();
         let is_large = self.cost() > LONG;
         let page = assembly.system.graph().page(Folding::Structural);
-        let flow = |variables| Flow::new(model, assembly, variables);
+        let flow = |variables| Flow::with_stand_ins(model, assembly, variables);
         let first = match outlet {
             _ if is_large => None,
             Outlet::Source(Variables::QuasiVelocities) => {
@@ -59,13 +61,18 @@ impl Second {
             Outlet::Equations(variables) | Outlet::Source(variables) => {
                 Some(First::flow(variables.name(), flow(variables)?, self, assembly, &mut agreement))
             }
-            Outlet::Page(form) => match self.too_large_for(form, assembly) {
-                Some(reason) => {
-                    agreement.leave_out(&printed_name(form), reason);
-                    None
+            Outlet::Page(form) | Outlet::PageWithReactions(form) => {
+                match self.too_large_for(form, assembly) {
+                    Some(reason) => {
+                        agreement.leave_out(&printed_name(form), reason);
+                        None
+                    }
+                    None => {
+                        let reactions = matches!(outlet, Outlet::PageWithReactions(_));
+                        First::printed((form, reactions), assembly, self, &page, &mut agreement)
+                    }
                 }
-                None => First::printed(form, assembly, self, &page, &mut agreement),
-            },
+            }
         };
         // What has no numbers of its own is made of the equations in quasi-velocities.
         let compared = match first {

@@ -8,24 +8,13 @@ use pc_model::{Assembly, FreeForm, Variables};
 use pc_print::{Balance, Derived, Form, Sheet};
 
 use crate::comparison::second::Second;
+use crate::comparison::ways::{Way, by_b, ways};
 use crate::derivation::derivation::Derivation;
 use crate::derivation::here::Here;
 use crate::derivation::quantity::{Free, Quantity};
 use crate::error::Irregular;
 use crate::numbers::linear::solve;
 use crate::numbers::rounding::Rounding;
-
-/// The printed forms.
-pub(crate) const FORMS: [Form; 8] = [
-    Form::Poincare,
-    Form::Canonical,
-    Form::Lagrange,
-    Form::Voronets,
-    Form::Reduced,
-    Form::LiePoisson,
-    Form::Orthonormal,
-    Form::Hamel,
-];
 
 /// The name of a printed form.
 pub(crate) fn printed_name(form: Form) -> String {
@@ -44,6 +33,8 @@ pub(crate) struct Printed<'g> {
     quasi_velocities: Vec<String>,
     /// The left-hand sides of equations and the expressions that they equal, without reactions.
     direct: Vec<(Side, Expr<'g>)>,
+    /// The equations for the accelerations or the rates of momenta, in each way in which they are printed.
+    ways: Vec<Way<'g>>,
     /// The symbols with their meanings.
     inputs: Vec<(Expr<'g>, Input)>,
     /// The change of quasi-velocities, if the equations do not use those of the model.
@@ -112,11 +103,16 @@ pub(crate) enum Input {
 
 impl<'g> Printed<'g> {
     /// The printed equations of a form; `None` if there is no such form.
-    pub(crate) fn new(form: Form, assembly: &Assembly<'_>, page: &'g Graph) -> Option<Printed<'g>> {
+    pub(crate) fn new(
+        (form, reactions): (Form, bool),
+        assembly: &Assembly<'_>,
+        page: &'g Graph,
+    ) -> Option<Printed<'g>> {
         if assembly.system.large_tree().is_some() {
             return None; // bodies are printed instead of equations
         }
         let (_, derived) = Derived::new(form, assembly).ok()?;
+        let derived = if reactions { derived.with_reactions(form, assembly).ok()? } else { derived };
         let sheet = match form {
             // They equal Lagrange's equations.
             Form::Voronets if assembly.constraints.multipliers().is_none() => return None,
@@ -143,6 +139,8 @@ impl<'g> Printed<'g> {
         };
         let mut direct: Vec<_> = sheet.rates.iter().chain(&sheet.states).map(rate).collect();
         direct.push((Side::Energy, sheet.energy));
+        let of_coordinate = |(x, value): (&Expr<'g>, Expr<'g>)| (Side::Rate(x.to_string()), value);
+        direct.extend(sheet.coordinates.iter().zip(by_b(&sheet, page)).map(of_coordinate));
         if let Balance::Momenta { of_velocities, velocities, .. } = &sheet.balance {
             direct.extend((0..).zip(of_velocities).map(|(s, &y)| (Side::Momentum(s), y)));
             // If the equations are not closed, quasi-velocities are their own values.
@@ -150,7 +148,9 @@ impl<'g> Printed<'g> {
             let solved = quasi_velocities.iter().zip(solved);
             direct.extend(solved.map(|(eta, &value)| (Side::QuasiVelocity(eta.clone()), value)));
         }
-        Some(Printed { form, page, sheet, quasi_velocities, direct, inputs: Vec::new(), change })
+        let time = page.symbol(&assembly.system.frame().time().to_string());
+        let ways = ways(&sheet, time, page);
+        Some(Printed { form, page, sheet, quasi_velocities, direct, ways, inputs: Vec::new(), change })
     }
 
     /// The name of the form.
@@ -195,7 +195,7 @@ impl<'g> Printed<'g> {
             Side::Energy => ("energy".to_owned(), Some(Quantity::FreeEnergy)),
         });
         let mut candidates: Candidates = direct.collect();
-        for way in ["", ", multiplied out"] {
+        for Way { label: way, .. } in &self.ways {
             if self.has_momenta() {
                 let rates = (0..).zip(&momenta);
                 candidates.extend(
@@ -218,29 +218,17 @@ impl<'g> Printed<'g> {
     fn momenta(&self) -> Vec<String> {
         match &self.sheet.balance {
             Balance::Momenta { momenta, .. } => momenta.iter().map(Expr::to_string).collect(),
-            Balance::Velocities { .. } => Vec::new(),
-        }
-    }
-
-    /// M row by row, empty if rates of momenta are printed, and the right-hand sides, both unchanged and
-    /// expanded.
-    fn balance(&self) -> (Vec<Expr<'g>>, [&[Expr<'g>]; 2]) {
-        match &self.sheet.balance {
-            Balance::Velocities { mass, right, written, .. } => {
-                (mass.entries().into_owned(), [right, written])
-            }
-            Balance::Momenta { right, written, .. } => (Vec::new(), [right, written]),
+            Balance::Velocities { .. } | Balance::Maggi(_) | Balance::Forces(_) => Vec::new(),
         }
     }
 
     /// All expressions.
     fn all(&self) -> Vec<Expr<'g>> {
-        let (mass, [right, written]) = self.balance();
         let direct = self.direct.iter().map(|&(_, value)| value);
+        let ways = self.ways.iter().flat_map(|way| way.mass.iter().chain(&way.right)).copied();
         let reactions = self.sheet.reactions.iter().map(|&(_, value)| value);
         let change = self.change.iter().flat_map(|change| change.definitions.iter().chain(&change.rates));
-        let own = direct.chain(mass).chain(right.to_vec()).chain(written.to_vec()).chain(reactions);
-        own.chain(change.copied()).collect()
+        direct.chain(ways).chain(reactions).chain(change.copied()).collect()
     }
 
     fn has_momenta(&self) -> bool {
@@ -284,15 +272,14 @@ impl<'g> Printed<'g> {
         }
         let direct: Vec<Expr<'g>> = self.direct.iter().map(|&(_, value)| value).collect();
         let mut values = evaluate(&direct, &at)?;
-        let (mass, ways) = self.balance();
-        let mass = evaluate(&mass, &at)?;
         let mut rates = Vec::new();
-        for right in ways {
-            let right = evaluate(right, &at)?;
+        for way in &self.ways {
+            let right = evaluate(&way.right, &at)?;
             rates = if self.has_momenta() {
                 right
             } else {
                 let k = right.len();
+                let mass = evaluate(&way.mass, &at)?;
                 let mass = DMatrix::from_fn(k, k, |r, s| mass[r * k + s]);
                 solve(&mass, &right, &right)?.values
             };

@@ -56,6 +56,9 @@ pub struct Second {
     quaternions: Vec<[usize; 4]>,
 }
 
+/// What Newton's method may leave in place of a zero, in the unit of the component.
+const LEFT: f64 = 1e-9;
+
 /// The number of points at which ranks are evaluated.
 const RANK_POINTS: usize = 6;
 
@@ -233,6 +236,25 @@ impl Second {
         };
         let resultant = || Resultant::named(name, &names.constraints, &names.bodies).map(Quantity::Resultant);
         observed.or_else(reaction).or_else(resultant)
+    }
+
+    /// The size of a component of the state with this name and value: that of its value, or its unit where the value is what
+    /// Newton's method leaves in place of a zero. The unit is 1, unless the start has small values.
+    pub fn size(&self, name: &str, value: f64) -> f64 {
+        let unit = self.unit(name);
+        if value.abs() > LEFT * unit { value.abs() } else { unit }
+    }
+
+    fn unit(&self, name: &str) -> f64 {
+        let (names, Units { x, w, z }) = (&self.derivation.text.names, &self.derivation.units);
+        let among = |names: &[String], units: &[f64]| {
+            names.iter().position(|known| known == name).and_then(|place| units.get(place).copied())
+        };
+        let is_own = matches!(self.derivation.text.velocities, Velocities::Quasi(_))
+            || names.quasi_velocities.is_empty();
+        let velocity = || among(&self.columns, w).filter(|_| is_own);
+        let known = among(&names.coordinates, x).or_else(|| among(&names.states, z)).or_else(velocity);
+        known.unwrap_or(1.0)
     }
 
     /// The approximate number of terms of the text that have to be evaluated to compare the equations at one

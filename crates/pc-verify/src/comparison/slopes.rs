@@ -161,9 +161,16 @@ impl Moved<'_> {
             |name: &str| self.model.parameters().find(|(known, _)| *known == name).map(|(_, value)| value);
         let parameters =
             self.slope.parameters.iter().map(|(name, by)| (parameter(name).unwrap_or_default(), *by));
-        let all = self.state.iter().copied().zip(self.slope.state.iter().copied()).chain(parameters);
-        let sizes =
-            all.filter(|(value, by)| *value != 0.0 && *by != 0.0).map(|(value, by)| (value / by).abs());
+        let names = self.flow.motion.names().iter();
+        let components = names.zip(self.state).zip(&self.slope.state);
+        // What is zero, if only up to rounding, has no size of its own.
+        let components = components
+            .filter(|((name, value), _)| self.second.size(name, **value) == value.abs())
+            .map(|((_, &value), &by)| (value, by));
+        let sizes = components
+            .chain(parameters)
+            .filter(|(value, by)| *value != 0.0 && *by != 0.0)
+            .map(|(value, by)| (value / by).abs());
         let least = sizes.fold(f64::INFINITY, f64::min);
         if least.is_finite() { least } else { 1.0 }
     }

@@ -46,6 +46,8 @@ pub(crate) struct Derived {
     /// The sizes of the terms of p, ∂²L/∂w∂w w, and of the terms of w when p is solved for w.
     pub(crate) momentum_sizes: Vec<f64>,
     pub(crate) velocity_sizes: Vec<f64>,
+    /// The largest entry of ∂²L/∂w∂w.
+    pub(crate) mass_size: f64,
     /// The Lagrangian L and its rate.
     pub(crate) lagrangian: f64,
     pub(crate) lagrangian_rate: f64,
@@ -134,6 +136,7 @@ impl Derivation {
             momenta,
             momentum_sizes,
             velocity_sizes,
+            mass_size: mass.amax(),
             lagrangian: along_time.re,
             lagrangian_rate: along_time.eps + through_velocities,
             accelerations,

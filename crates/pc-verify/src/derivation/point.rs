@@ -2,6 +2,8 @@
 
 use std::cell::{Cell, OnceCell};
 
+use pc_expr::StandIn;
+
 use crate::error::{Irregular, Unable};
 use crate::numbers::number::Number;
 use crate::numbers::rounding::Rounding;
@@ -329,6 +331,19 @@ impl<'a, T: Number> Point<'a, T> {
                 let branch = if side(x, "step")? >= 0.0 { 1 } else { 2 };
                 self.value(&arguments[branch])?
             }
+            Function::Undetermined(place) => self.stand_in(place, &self.all(arguments)?),
+        })
+    }
+
+    /// The value of the function that takes the place of an undetermined one.
+    fn stand_in(&self, place: usize, arguments: &[T]) -> T {
+        let waves = &self.text.names.functions[place].stand_in.waves;
+        waves.iter().fold(T::constant(StandIn::LEVEL), |sum, wave| {
+            let terms = wave.frequencies.iter().zip(arguments);
+            let angle = terms.fold(T::constant(wave.phase), |angle, (&frequency, &x)| {
+                self.round(angle + self.round(x * frequency))
+            });
+            self.round(sum + self.round(angle.sin() * wave.amplitude))
         })
     }
 
@@ -402,11 +417,12 @@ impl<'a, T: Number> Point<'a, T> {
             Some(Turning::Rotation(rotation)) => {
                 let r = self.all(rotation)?;
                 let rate = rotation.iter().map(|entry| self.rate(entry)).collect::<Result<Vec<T>, _>>()?;
-                // (RᵀṘ)_ij, of which ω_1 = (RᵀṘ)_32 = −(RᵀṘ)_23 and so on
+                // (RᵀṘ)_ij, of which ω_1 = (RᵀṘ)_32 = −(RᵀṘ)_23 and so on, for columns of length 1
                 let entry = |i: usize, j: usize| {
                     (0..3).fold(T::constant(0.0), |sum, l| sum + r[3 * l + i] * rate[3 * l + j])
                 };
-                let axis = |i: usize, j: usize| self.round((entry(i, j) - entry(j, i)) * 0.5);
+                let square = r.iter().fold(T::constant(0.0), |sum, &entry| sum + entry * entry) / 3.0;
+                let axis = |i: usize, j: usize| self.round((entry(i, j) - entry(j, i)) / (square * 2.0));
                 Ok(vec![axis(2, 1), axis(0, 2), axis(1, 0)])
             }
             None => Ok(Vec::new()),

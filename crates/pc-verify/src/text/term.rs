@@ -1,6 +1,8 @@
 //! Syntax trees with their names resolved.
 
+use pc_expr::StandIn;
 use pc_expr::parse::{Ast, AstKind, Factor, Sign};
+use pc_model::document::GivenFunction;
 
 use crate::error::Unable;
 use crate::text::resultant::Resultant;
@@ -56,7 +58,12 @@ pub(crate) enum Function {
     Min,
     Max,
     Step,
+    /// An undetermined function, by its place among the functions of the text.
+    Undetermined(usize),
 }
+
+/// The number of terms up to which calls of functions are written out.
+const MOST_TERMS: usize = 100_000;
 
 const FUNCTIONS: [(&str, Function); 19] = [
     ("sin", Function::Sin),
@@ -129,6 +136,28 @@ impl Term {
     }
 }
 
+/// A function that the text declares.
+#[derive(Clone, Debug)]
+pub(crate) struct Declared {
+    name: String,
+    arguments: Vec<String>,
+    /// Its value, if it is given.
+    is: Option<Ast>,
+    /// The function that takes its place otherwise.
+    pub(crate) stand_in: StandIn,
+}
+
+impl Declared {
+    pub(crate) fn of(function: &GivenFunction) -> Declared {
+        Declared {
+            name: function.name.text.clone(),
+            arguments: function.arguments.clone(),
+            is: function.is.as_ref().map(|is| is.ast.clone()),
+            stand_in: StandIn::new(&function.name.text, function.arguments.len()),
+        }
+    }
+}
+
 /// The names of a model, whose positions here are the indices used in terms.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Names {
@@ -140,6 +169,9 @@ pub(crate) struct Names {
     pub(crate) definitions: Vec<String>,
     pub(crate) constraints: Vec<String>,
     pub(crate) bodies: Vec<String>,
+    pub(crate) functions: Vec<Declared>,
+    /// The arguments of a function, with the terms they denote where its value is being resolved.
+    pub(crate) arguments: Vec<(String, Term)>,
     /// The names of components of points, with the terms they denote.
     pub(crate) points: Vec<(String, Term)>,
 }
@@ -170,10 +202,30 @@ impl Names {
             AstKind::Power(base, exponent) => Term::Power(boxed(base)?, boxed(exponent)?),
             AstKind::Call(name, _, arguments) => {
                 let known = FUNCTIONS.iter().find(|(known, _)| known == name);
-                let (_, function) = known.ok_or_else(|| unknown(name))?;
-                Term::Call(*function, all(arguments)?)
+                match known {
+                    Some((_, function)) => Term::Call(*function, all(arguments)?),
+                    None => self.declared(name, all(arguments)?)?,
+                }
             }
         })
+    }
+
+    /// The call of a function of the text: its value with the arguments put in, if it has one.
+    fn declared(&self, name: &str, arguments: Vec<Term>) -> Result<Term, Unable> {
+        let place = self.functions.iter().position(|function| function.name == name);
+        let place = place.ok_or_else(|| unknown(name))?;
+        let function = &self.functions[place];
+        let Some(is) = &function.is else { return Ok(Term::Call(Function::Undetermined(place), arguments)) };
+        let inside = Names {
+            parameters: self.parameters.clone(),
+            functions: self.functions.clone(),
+            arguments: function.arguments.iter().cloned().zip(arguments).collect(),
+            ..Names::default()
+        };
+        match inside.resolve(is)? {
+            long if long.size() > MOST_TERMS => Err(Unable::TooLong { name: name.to_owned() }),
+            value => Ok(value),
+        }
     }
 
     /// The coordinate with this name.
@@ -186,6 +238,10 @@ impl Names {
         place(&self.quasi_velocities, name).map(Term::QuasiVelocity).ok_or_else(|| unknown(name))
     }
 
+    fn argument(&self, name: &str) -> Option<Term> {
+        self.arguments.iter().find(|(known, _)| known == name).map(|(_, value)| value.clone())
+    }
+
     fn point(&self, name: &str) -> Option<Term> {
         self.points.iter().find(|(known, _)| known == name).map(|(_, component)| component.clone())
     }
@@ -196,6 +252,7 @@ impl Names {
             "t" => Ok(Term::Time),
             "pi" => Ok(Term::Number(std::f64::consts::PI)),
             _ => None
+                .or_else(|| self.argument(name))
                 .or_else(|| place(&self.parameters, name).map(Term::Parameter))
                 .or_else(|| place(&self.states, name).map(Term::State))
                 .or_else(|| place(&self.coordinates, name).map(Term::Coordinate))

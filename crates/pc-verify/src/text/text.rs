@@ -9,7 +9,7 @@ use pc_model::document::{AlgebraDefinition, Document, Expression, NamedExpressio
 
 use crate::error::Unable;
 use crate::text::body::{Body, Turning, matrix};
-use crate::text::term::{Names, Term};
+use crate::text::term::{Declared, Names, Term};
 use crate::text::tree::Tree;
 
 /// Everything in a model that determines its motion.
@@ -88,7 +88,9 @@ impl Text {
             definitions: tree.names(),
             constraints: document.constraints.iter().map(|c| c.name.text.clone()).collect(),
             bodies: labels.map(|name| name.text.clone()).collect(),
+            functions: document.functions.iter().map(Declared::of).collect(),
             points: tree.points(),
+            ..Names::default()
         };
         let term = |expression: &Expression| names.resolve(&expression.ast);
         let terms = |list: &[Expression]| list.iter().map(term).collect::<Result<Vec<Term>, Unable>>();

@@ -33,9 +33,9 @@ w = "x*u"
 fn forces_of_every_kind_agree_by_both_routes() {
     let model = Model::new(Document::parse(Source::new("forces.toml", MODEL)).unwrap());
     let agreement = model.derived(|assembly| verify(&model, assembly, &Options::default())).unwrap();
-    let printed =
-        ["poincare as printed", "canonical as printed", "lagrange as printed", "orthonormal as printed"];
-    let forms = [&["poincare", "canonical", "orthonormal", "emit"][..], &printed].concat();
+    let printed = ["poincare", "canonical", "lagrange", "orthonormal", "maggi", "kane", "gibbs-appell"];
+    let forms = ["poincare", "canonical", "orthonormal", "emit"].map(str::to_owned).into_iter();
+    let forms: Vec<String> = forms.chain(printed.map(|form| format!("{form} as printed"))).collect();
     assert_eq!((agreement.states, agreement.forms.join(", ")), (100, forms.join(", ")), "{agreement:?}");
     assert!(agreement.error < 1e-13 && agreement.not_compared.is_empty(), "{agreement:?}");
 }

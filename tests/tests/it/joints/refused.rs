@@ -267,7 +267,7 @@ mass = 1
         r#"m.toml:3:9: [bodies] a: `a` is already the name of a parameter (line 2)
     [bodies.a]
             ^
-  help: parameters, inputs, definitions, coordinates, quasi-velocities, states, integrals and outputs share one namespace; choose another name, such as `a_1`"#,
+  help: parameters, inputs, functions, definitions, coordinates, quasi-velocities, states, integrals and outputs share one namespace; choose another name, such as `a_1`"#,
     ),
     (
         "name taken by another joint",
@@ -282,7 +282,7 @@ mass = 1
         r#"m.toml:5:63: [bodies.b] joint.coordinates: `a` is already the name of a coordinate (line 1)
     …int = { kind = "revolute", axis = [0, 0, 1], coordinates = ["a"] }
                                                                  ^^^
-  help: parameters, inputs, definitions, coordinates, quasi-velocities, states, integrals and outputs share one namespace; choose another name, such as `a_1`"#,
+  help: parameters, inputs, functions, definitions, coordinates, quasi-velocities, states, integrals and outputs share one namespace; choose another name, such as `a_1`"#,
     ),
     (
         "no name",
@@ -555,7 +555,7 @@ at = [[1, 0, 0], [1, 0, 0]]
         r#"m.toml:6:8: [loops] l: `l_1` is already the name of a constraint (line 5)
     [loops.l]
            ^
-  help: parameters, inputs, definitions, coordinates, quasi-velocities, states, integrals and outputs share one namespace; choose another name, such as `l_1_1`"#,
+  help: parameters, inputs, functions, definitions, coordinates, quasi-velocities, states, integrals and outputs share one namespace; choose another name, such as `l_1_1`"#,
     ),
     (
         "undefined quasi-velocity",

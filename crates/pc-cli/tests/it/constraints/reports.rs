@@ -65,7 +65,7 @@ fn dropped_constraints_are_reported() {
     let text = stderr(&pc(&twice, &["run", "-"]));
     assert!(
         text.contains(
-            "\n  dropped  nothing holds whatever the motion\n           speed follows from length\n"
+            "\n  dropped  nothing holds whatever the motion: λ_nothing is taken as 0\n           speed follows from length: λ_speed is taken as 0\n"
         ),
         "{text}"
     );
@@ -175,7 +175,7 @@ fn an_unknown_form_lists_those_available() {
     let output = pc("", &["derive", "spherical-pendulum-cartesian", "--form", "lagrange"]);
     assert_eq!(output.status.code(), Some(4));
     let text = stderr(&output);
-    let help = "\n  help: its forms are poincare and canonical, in the quasi-velocities of the model\n";
+    let help = "\n  help: its forms are poincare, canonical, kane and gibbs-appell, in the quasi-velocities of the model\n";
     assert!(text.ends_with(help), "{text}");
 }
 

@@ -262,15 +262,24 @@ def equations(data: dict[str, Any]) -> dict[str, Any]:
         "quasi_velocities": [reader.symbol(name) for name in data["quasi_velocities"]],
         "parameters": [reader.symbol(name) for name in data["parameters"]],
     }
-    if "mass_matrix" in data:
+    if "momenta" not in data:
         b = data["kinematics"]["b"]
         eta = sympy.Matrix(found["quasi_velocities"])
         rows = sympy.Matrix(len(b), len(eta), lambda i, j: reader.read(b[i][j]))
         found["velocities"] = rows * eta + column(data["kinematics"]["b_0"])
-        mass = data["mass_matrix"]
-        found["mass_matrix"] = sympy.Matrix(len(mass), len(mass), lambda i, j: reader.read(mass[i][j]))
-        found["right_hand_side"] = column(data["equations"])
+        if "mass_matrix" in data:
+            mass = data["mass_matrix"]
+            found["mass_matrix"] = sympy.Matrix(len(mass), len(mass), lambda i, j: reader.read(mass[i][j]))
+            found["right_hand_side"] = column(data["equations"])
         found["energy"] = reader.read(data["energy"])
+        for list_of in ("active_forces", "inertia_forces", "acceleration_terms", "vanishing"):
+            if list_of in data:
+                found[list_of] = column(data[list_of])
+        if "gibbs_function" in data:
+            found["gibbs_function"] = reader.read(data["gibbs_function"])
+        if "lagrange_expressions" in data:
+            named = data["lagrange_expressions"].items()
+            found["lagrange_expressions"] = {reader.symbol(name): reader.read(text) for name, text in named}
     else:
         found["momenta"] = [reader.symbol(name) for name in data["momenta"]]
         found["velocities"] = column(data["velocities"])

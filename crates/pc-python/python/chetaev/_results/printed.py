@@ -110,7 +110,9 @@ class Equations:
         dict
             ``coordinates``, ``quasi_velocities`` and ``parameters`` (lists of symbols), ``velocities`` (ẋ, a column), and, for equations
             in velocities, ``mass_matrix``, ``right_hand_side`` of M η̇ = r and ``energy``; for canonical ones ``momenta``, ``rates`` (ẏ) and
-            ``hamiltonian``. Names are real symbols; velocities are called ``x'``, accelerations ``x''``.
+            ``hamiltonian``. Kane's have ``active_forces`` F and ``inertia_forces`` F*, Gibbs–Appell's ``gibbs_function`` S, both
+            ``acceleration_terms`` −F* = ∂S/∂η̇; Maggi's have ``lagrange_expressions`` and the sums of these that are ``vanishing``,
+            in place of M and r. Names are real symbols; velocities are called ``x'``, accelerations ``x''``.
 
         Examples
         --------
@@ -137,17 +139,27 @@ class Theory:
     __slots__ = ("_arguments", "_core", "text")
 
     def __init__(
-        self, model: ModelLike, degree: int, functions: Sequence[str], settings: dict[str, Any]
+        self,
+        model: ModelLike,
+        degree: int,
+        functions: Sequence[str],
+        canonical: Sequence[tuple[str, str]],
+        settings: dict[str, Any],
     ) -> None:
-        self._arguments = (model, degree, functions, settings)
+        self._arguments = (model, degree, functions, canonical, settings)
         self._core = model._changed("Model.theory", settings)
         self.text = self._printed("text")
 
     def _printed(self, language: str) -> str:
-        _, degree, functions, _ = self._arguments
-        return self._core.theory(language, degree, functions)
+        _, degree, functions, canonical, _ = self._arguments
+        return self._core.theory(language, degree, functions, canonical)
 
-    def __reduce__(self) -> tuple[type[Theory], tuple[ModelLike, int, Sequence[str], dict[str, Any]]]:
+    def __reduce__(
+        self,
+    ) -> tuple[
+        type[Theory],
+        tuple[ModelLike, int, Sequence[str], Sequence[tuple[str, str]], dict[str, Any]],
+    ]:
         return Theory, self._arguments
 
     def __str__(self) -> str:
