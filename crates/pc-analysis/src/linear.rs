@@ -6,7 +6,7 @@
 //! solves near a state, and `linearization` combines the derivatives there; `second_order` writes the equations as M q̈ + G q̇ + K q = F u and
 //! `modes` finds eigenvectors. `root_locus` follows eigenvalues as a parameter varies (`assignment` pairs them),
 //! `equilibria` searches a box for equilibria, and `trim` chooses inputs and components of the state so that the state
-//! is an equilibrium.
+//! is an equilibrium. `units` says how a state is measured.
 
 pub(crate) mod assignment;
 pub(crate) mod conserved;
@@ -22,3 +22,4 @@ pub(crate) mod search;
 pub(crate) mod second_order;
 pub(crate) mod statics;
 pub(crate) mod trim;
+pub(crate) mod units;

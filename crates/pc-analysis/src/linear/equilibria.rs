@@ -115,6 +115,9 @@ const FALLING: f64 = 1e-3;
 /// Conditions on velocities are dependent up to this singular value, relative to the largest.
 const DEPENDENT: f64 = 1e-6;
 
+/// How far from a small start guesses are spread, in its units.
+const REACH: f64 = 4.0;
+
 /// The largest relative difference of the energies within one family.
 const SAME_ENERGY: f64 = 1e-9;
 
@@ -147,6 +150,7 @@ impl EquilibriumSearch {
         (t, start): (f64, &[f64]),
         conserved: &Conserved<'_>,
     ) -> Result<Equilibria, AnalysisError> {
+        linearizer.measure_by(t, start);
         let mut motion = linearizer.motion.clone();
         let domain = self.domain(linearizer, &mut motion, t, start)?;
         linearizer.check_searchable(t, start)?;
@@ -245,7 +249,8 @@ impl EquilibriumSearch {
                 given.map_or((start[i] - reach, start[i] + reach), |&(_, low, high)| (low, high));
             Edge { place: i, low, high, is_given: given.is_some() }
         };
-        Ok(Domain { edges: places.iter().map(edge).collect(), periods })
+        let is_small = linearizer.is_small();
+        Ok(Domain { edges: places.iter().map(edge).collect(), periods, units: linearizer.units.clone(), is_small })
     }
 }
 
@@ -265,6 +270,8 @@ fn insertion_sorted<T>(list: &mut [T], order: impl Fn(&T, &T) -> std::cmp::Order
 struct Domain {
     edges: Vec<Edge>,
     periods: Vec<Option<f64>>,
+    units: Vec<f64>,
+    is_small: bool,
 }
 
 struct Edge {
@@ -282,9 +289,16 @@ impl Domain {
         if number == 0 && self.contains(&guess) {
             return guess;
         }
+        // A system may be small because it starts near one of its equilibria, or because it is small.
+        let is_near = self.is_small && number % 2 == 1;
         for (edge, prime) in self.edges.iter().zip(primes()) {
+            let (unit, here) = (self.units[edge.place], start[edge.place]);
+            let (low, high) = match is_near && !edge.is_given && unit < 1.0 {
+                true => (here - REACH * unit, here + REACH * unit),
+                false => (edge.low, edge.high),
+            };
             let part = (number as f64 * f64::from(prime).sqrt()).fract();
-            guess[edge.place] = edge.low + (edge.high - edge.low) * part;
+            guess[edge.place] = low + (high - low) * part;
         }
         guess
     }
@@ -313,7 +327,7 @@ impl Domain {
     /// Whether a state is in the given boxes.
     fn contains(&self, state: &[f64]) -> bool {
         self.edges.iter().filter(|edge| edge.is_given).all(|edge| {
-            let margin = SAME * (1.0 + edge.low.abs().max(edge.high.abs()));
+            let margin = SAME * (self.units[edge.place] + edge.low.abs().max(edge.high.abs()));
             (edge.low - margin..=edge.high + margin).contains(&state[edge.place])
         })
     }
@@ -322,12 +336,12 @@ impl Domain {
         self.distance(a, b) <= SAME
     }
 
-    /// The greatest difference between components of two states modulo their periods, relative to 1 + |a|.
+    /// The greatest difference between components of two states modulo their periods, relative to their units and |a|.
     fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
-        let components = a.iter().zip(b).zip(&self.periods).map(|((a, b), period)| {
+        let components = a.iter().zip(b).enumerate().map(|(i, (a, b))| {
             let distance = (a - b).abs();
-            let around = period.map_or(distance, |period| (period - distance).abs());
-            distance.min(around) / (1.0 + a.abs())
+            let around = self.periods[i].map_or(distance, |period| (period - distance).abs());
+            distance.min(around) / (self.units[i] + a.abs())
         });
         components.fold(0.0, f64::max)
     }
@@ -365,7 +379,7 @@ impl Linearizer {
         let Ok(rates) = self.motion.rates(t, &found.state) else { return End::Pole };
         let reached = |i: usize| {
             let of_state: f64 =
-                (0..slopes.columns()).map(|j| slopes[(i, j)].abs() * (1.0 + found.state[j].abs())).sum();
+                (0..slopes.columns()).map(|j| slopes[(i, j)].abs() * (self.units[j] + found.state[j].abs())).sum();
             rates[i].abs() <= FALLING * of_state
         };
         if !(0..rates.len()).all(reached) {
@@ -395,13 +409,21 @@ impl Linearizer {
         if levels.is_empty() {
             return Some(guess.to_vec());
         }
-        let mut end =
-            newton::solve(guess.to_vec(), MOST_STEPS, |y| self.surface_at(t, y, Some(&levels))).ok()?;
+        let units = self.units.clone();
+        let measured = |z: &[f64]| -> Vec<f64> { z.iter().zip(&units).map(|(z, unit)| z * unit).collect() };
+        let mut end = newton::solve(self.in_units(guess), MOST_STEPS, |z| {
+            let (values, slopes) = self.surface_at(t, &measured(z), Some(&levels))?;
+            let by_unit = |a: usize, j: usize| slopes[(a, j)] * units[j];
+            Ok((values, Matrix::from_fn(slopes.rows(), slopes.columns(), by_unit)))
+        })
+        .ok()?;
+        let is_solution = end.is_solution(SAME);
+        end.point = measured(&end.point);
         if self.rests_at_zero {
             let velocities = self.quasi_velocities();
             end.point[velocities.clone()].copy_from_slice(&guess[velocities]);
         }
-        end.is_solution(SAME).then_some(end.point)
+        is_solution.then_some(end.point)
     }
 
     fn described(

@@ -49,15 +49,15 @@ impl Linearizer {
         kind: Family,
     ) -> Result<Neighbours, AnalysisError> {
         let (options, moving) = (self.options_of(kind), self.moving_in(kind));
-        let directions = self.neutral(t, state, kind)?;
+        let (directions, size) = (self.neutral(t, state, kind)?, 1.0 + norm(&self.in_units(state)));
         let mut is_family = |direction: &Vec<f64>| {
             [1.0, -1.0].into_iter().all(|side| {
-                let way = |i: usize| side * AWAY * (1.0 + norm(state)) * direction[i];
+                let way = |i: usize| side * AWAY * size * direction[i] * self.units[i];
                 let aim: Vec<f64> = (0..state.len()).map(|i| state[i] + way(i)).collect();
                 let Ok(found) = self.find_on(t, state, &aim, &options, &moving) else { return false };
-                let missed =
-                    (0..state.len()).filter(|i| !self.cyclic.contains(i)).map(|i| found.state[i] - aim[i]);
-                norm(&missed.collect::<Vec<_>>()) <= NEAR * AWAY * (1.0 + norm(state))
+                let missed = |i: usize| (found.state[i] - aim[i]) / self.units[i];
+                let seen = (0..state.len()).filter(|i| !self.cyclic.contains(i));
+                norm(&seen.map(missed).collect::<Vec<_>>()) <= NEAR * AWAY * size
             })
         };
         let family = directions.iter().filter(|direction| is_family(direction)).count();
@@ -98,7 +98,7 @@ impl Linearizer {
         Ok(unknowns)
     }
 
-    /// Orthonormal directions of the state, without cyclic coordinates, along which the conditions of steady motion hold to
+    /// Orthonormal directions of the state in its units, without cyclic coordinates, along which the conditions of steady motion hold to
     /// first order.
     fn neutral(&mut self, t: f64, state: &[f64], kind: Family) -> Result<Vec<Vec<f64>>, AnalysisError> {
         let unknowns = self.unknowns_of(t, state, kind)?;

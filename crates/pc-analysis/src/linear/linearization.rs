@@ -99,6 +99,7 @@ impl Linearizer {
         options: &SteadyOptions,
         cyclic: CyclicCoordinates,
     ) -> Result<Linearization, AnalysisError> {
+        self.measure_by(t, guess);
         let found = self.find(t, guess, options)?;
         let left_out = match cyclic {
             CyclicCoordinates::LeftOut => self.cyclic.clone(),
@@ -118,6 +119,7 @@ impl Linearizer {
     /// [`ShapeError`](pc_mech::ShapeError); the errors of [`rhs`](pc_mech::VectorField::rhs) if f is not defined.
     pub fn at(&mut self, t: f64, state: &[f64]) -> Result<Linearization, AnalysisError> {
         shape("the state", state.len(), self.names().len())?;
+        self.measure_by(t, state);
         let rates = self.motion.rates(t, state)?;
         let jacobian = first_approximation(&mut self.motion, t, state)?;
         let enough = AT_REST * norm(&jacobian.entries()) * (1.0 + norm(state));
@@ -188,7 +190,8 @@ impl Linearizer {
     ) -> Result<Linearization, AnalysisError> {
         let evaluated = self.evaluated(t, state)?;
         let rates = self.motion.rates(t, state)?;
-        let noise = errors(&mut self.motion, (t, state), &evaluated.jacobian, uncertainty.unwrap_or(0.0));
+        let uncertain = uncertainty.unwrap_or(0.0);
+        let noise = errors(&mut self.motion, (t, state), &self.units, &evaluated.jacobian, uncertain);
         let (n, all) = (self.sizes.coordinates, state.len());
         let coordinates: Vec<usize> = (0..n).filter(|i| !left_out.contains(i)).collect();
         let reduced = evaluated.reduced(&coordinates, n, all)?;
@@ -242,7 +245,7 @@ impl Linearizer {
             other_outputs: others.iter().map(name).collect(),
             state_matrix,
             spectrum,
-            uncertainty: uncertainty.unwrap_or(0.0),
+            uncertainty: uncertain,
         })
     }
 

@@ -99,6 +99,8 @@ pub struct Linearizer {
     pub(super) rests_at_zero: bool,
     /// Whether all functions that are constant along the motions in the frame are known.
     pub(super) is_leaf_known: bool,
+    /// The units in which the components of the state are measured.
+    pub(super) units: Vec<f64>,
 }
 
 /// The numbers of components of all parts.
@@ -261,6 +263,7 @@ impl Linearizer {
                 || rank_of_gradients(graph, &leaf.kept, x) >= leaf.codimension(),
             rests_at_zero: system.frame().b0().iter().all(|b| b.is_zero()),
             dependent: multipliers.map(following).unwrap_or_default(),
+            units: vec![1.0; state.len()],
             sizes,
             motion,
             cyclic,
@@ -386,7 +389,7 @@ impl Linearizer {
             |slopes: &Matrix<f64>, rows: usize| Matrix::from_fn(rows, n + l, |a, j| slopes[(first + a, j)]);
         let of_positions =
             |slopes: &Matrix<f64>, rows: usize| Matrix::from_fn(rows, n, |a, j| slopes[(a, j)]);
-        let there = aside(y, ASIDE);
+        let there = aside(y, &self.units, ASIDE);
         let typical = self
             .surface_at(t, &there, None)
             .map_or_else(|_| slopes.clone(), |(_, there)| larger(&slopes, &there));

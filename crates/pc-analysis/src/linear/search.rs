@@ -122,7 +122,7 @@ impl Linearizer {
             return Err(AnalysisError::NoSteadyMotion { residual, iterations: end.iterations, t, state });
         }
         let uncertainty = end.relative_residual().max(end.error);
-        SteadyMotion::at(&mut motion, (t, point.state), (&unknowns.moving, &varying), uncertainty)
+        SteadyMotion::at(&mut motion, (t, point.state), &self.units, (&unknowns.moving, &varying), uncertainty)
     }
 
     /// Solves the conditions of steady motion for the unknowns, by Newton's method from a guess, in at most `most` steps; of a
@@ -190,11 +190,12 @@ impl Linearizer {
         Ok(Balanced { end, point })
     }
 
-    /// The values of the unknowns at a state: those of the components and the inputs, zero for reactions and accelerations.
+    /// The values of the unknowns at a state: those of the components, in their units, and of the inputs, zero for reactions and
+    /// accelerations.
     fn values_of(&self, unknowns: &Unknowns, state: &[f64]) -> Vec<f64> {
         let parameters = self.motion.parameters();
         let others = self.statics.reactions() + unknowns.varying.len();
-        (unknowns.components.iter().map(|&i| state[i]))
+        (unknowns.components.iter().map(|&i| state[i] / self.units[i]))
             .chain(unknowns.inputs.iter().map(|&j| parameters[self.inputs[j].1]))
             .chain(vec![0.0; others])
             .collect()
@@ -227,8 +228,9 @@ impl Linearizer {
             if is_given { without_rounding(distances[a], &slopes, &point.state) } else { distances[a] }
         }));
         let slope = |i: usize, j: usize| match (i.checked_sub(rows), unknowns.components.get(j)) {
-            (None, _) => slopes[(i, j)],
-            (Some(a), Some(&component)) => normals[(a, component)],
+            (None, None) => slopes[(i, j)],
+            (None, Some(&component)) => slopes[(i, j)] * self.units[component],
+            (Some(a), Some(&component)) => normals[(a, component)] * self.units[component],
             (Some(_), None) => 0.0, // relations contain neither inputs nor reactions
         };
         Ok((values, Matrix::from_fn(rows + held, z.len(), slope)))
@@ -239,7 +241,7 @@ impl Linearizer {
         let (components, rest) = values.split_at(unknowns.components.len());
         let (inputs, rest) = rest.split_at(unknowns.inputs.len());
         let (reactions, accelerations) = rest.split_at(point.reactions.len());
-        unknowns.components.iter().zip(components).for_each(|(&i, &value)| point.state[i] = value);
+        unknowns.components.iter().zip(components).for_each(|(&i, &value)| point.state[i] = value * self.units[i]);
         for (&j, &value) in unknowns.inputs.iter().zip(inputs) {
             self.motion.parameters_mut()[self.inputs[j].1] = value;
         }

@@ -103,11 +103,11 @@ pub(crate) fn larger(a: &Matrix<f64>, b: &Matrix<f64>) -> Matrix<f64> {
     Matrix::from_fn(a.rows(), a.columns(), |i, j| a[(i, j)].abs().max(b[(i, j)].abs()))
 }
 
-/// A point away from another by about this fraction of 1 + |z| in each component, in no special direction.
-pub(crate) fn aside(point: &[f64], fraction: f64) -> Vec<f64> {
-    let step =
-        |(i, z): (usize, &f64)| z + fraction * (1.0 + z.abs()) * (1.0 + 0.5 * (1.7 * i as f64 + 0.4).sin());
-    point.iter().enumerate().map(step).collect()
+/// A point away from another by about this fraction of the unit and |z| together in each component, in no special direction.
+pub(crate) fn aside(point: &[f64], units: &[f64], fraction: f64) -> Vec<f64> {
+    let weight = |i: usize| 1.0 + 0.5 * (1.7 * i as f64 + 0.4).sin();
+    let step = |(i, (z, unit)): (usize, (&f64, &f64))| z + fraction * (unit + z.abs()) * weight(i);
+    point.iter().zip(units).enumerate().map(step).collect()
 }
 
 #[cfg(test)]

@@ -465,7 +465,7 @@ pub(crate) fn solve_by(
     mut f: impl FnMut(&[f64]) -> Result<(Vec<f64>, Matrix<f64>), AnalysisError>,
 ) -> Result<Iterate, AnalysisError> {
     let first = f(&start)?;
-    let beside = f(&aside(&start, ASIDE)).ok();
+    let beside = f(&aside(&start, &vec![1.0; start.len()], ASIDE)).ok();
     let mut here = Iterate::at((start, measured), first);
     if let Some((_, slopes)) = beside {
         here.typical = larger(&here.typical, &slopes);

@@ -181,18 +181,20 @@ impl SteadyMotion {
             return Err(AnalysisError::NoSteadyMotion { residual, iterations: end.iterations, t, state });
         }
         let uncertainty = end.relative_residual().max(end.error);
-        SteadyMotion::at(motion, (t, state), (&cyclic, &[]), uncertainty)
+        let units = vec![1.0; state.len()];
+        SteadyMotion::at(motion, (t, state), &units, (&cyclic, &[]), uncertainty)
     }
 
     /// The steady motion at a state, except that the `moving` coordinates have constant rates and the `varying`
     /// components follow from the others. The conditions of steady motion hold up to `uncertainty`, relative to the effect
-    /// of a change of the state by its own size.
+    /// of a change of the state by its own size and its `units`.
     ///
     /// # Errors
     /// [`AnalysisError::NotSmooth`]; otherwise as [`first_approximation`].
     pub(crate) fn at(
         motion: &mut Motion,
         (t, state): (f64, Vec<f64>),
+        units: &[f64],
         (moving, varying): (&[usize], &[usize]),
         uncertainty: f64,
     ) -> Result<SteadyMotion, AnalysisError> {
@@ -200,8 +202,8 @@ impl SteadyMotion {
         let rates = motion.rates(t, &state)?;
         let whole = first_approximation(motion, t, &state)?;
         let matrix = part(&whole, &kept, &kept);
-        check_smooth(motion, t, &state, &kept, &matrix)?;
-        let noise = part(&errors(motion, (t, &state), &whole, uncertainty), &kept, &kept);
+        check_smooth(motion, t, (&state, units), &kept, &matrix)?;
+        let noise = part(&errors(motion, (t, &state), units, &whole, uncertainty), &kept, &kept);
         let is_constant = |i: &&usize| !varying.contains(i);
         Ok(SteadyMotion {
             residual: norm(&kept.iter().filter(is_constant).map(|&i| rates[i]).collect::<Vec<_>>()),
@@ -245,16 +247,17 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 const SAFETY: f64 = 8.0;
 
 /// The errors of the first approximation at (t, y): its changes as the state changes by rounding, or by its `uncertainty`
-/// relative to 1 + |y|. They exceed the rounding of single numbers where large forces cancel.
+/// relative to the unit and |y| together. They exceed the rounding of single numbers where large forces cancel.
 pub(crate) fn errors(
     motion: &mut Motion,
     (t, state): (f64, &[f64]),
+    units: &[f64],
     approximation: &Matrix<f64>,
     uncertainty: f64,
 ) -> Matrix<f64> {
     let mut errors = approximation.map(|_| 0.0);
     for side in [1.0, -1.0] {
-        let beside = aside(state, side * uncertainty.max(ROUNDING));
+        let beside = aside(state, units, side * uncertainty.max(ROUNDING));
         let Ok(there) = first_approximation(motion, t, &beside) else { continue };
         let change = |i: usize, j: usize| SAFETY * (there[(i, j)] - approximation[(i, j)]);
         errors = larger(&errors, &Matrix::from_fn(errors.rows(), errors.columns(), change));
@@ -273,13 +276,14 @@ const AS_THERE: f64 = 1e-3;
 pub(crate) fn check_smooth(
     motion: &mut Motion,
     t: f64,
-    state: &[f64],
+    (state, units): (&[f64], &[f64]),
     kept: &[usize],
     slopes: &Matrix<f64>,
 ) -> Result<(), AnalysisError> {
     // All components shifted to one side, each by a different amount.
+    let size = 1.0 + norm(&state.iter().zip(units).map(|(y, unit)| y / unit).collect::<Vec<_>>());
     let mut at = |distance: f64| {
-        let step = |i: usize| distance * (1.0 + norm(state)) * (1.0 + 0.3 * (1.0 + i as f64).sqrt().fract());
+        let step = |i: usize| distance * size * units[i] * (1.0 + 0.3 * (1.0 + i as f64).sqrt().fract());
         let there: Vec<f64> = state.iter().enumerate().map(|(i, y)| y + step(i)).collect();
         Ok::<_, AnalysisError>(part(&first_approximation(motion, t, &there)?, kept, kept))
     };
