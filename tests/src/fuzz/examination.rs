@@ -159,8 +159,10 @@ fn examine_texts(
     let rescaled = thoroughness.units.and_then(|units| units.examine(specimen, &execution));
     examined.findings.extend(rescaled.iter().flat_map(|rescaled| rescaled.findings.clone()));
     if let Some(commands) = thoroughness.commands {
-        if let Some(rescaled) = &rescaled {
+        if let (Some(rescaled), Some(units)) = (&rescaled, thoroughness.units) {
             examined.add(commands.clone().follow_in_other_units(text, &rescaled.text));
+            let power = |name: &str| units.power(specimen, name);
+            examined.add(commands.linear_in_other_units(text, &rescaled.text, power));
         }
         examined.add(commands.examine(text, &execution));
     }

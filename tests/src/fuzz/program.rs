@@ -6,6 +6,7 @@
 //!                                                            members     of a sweep, against runs of their values
 //!                                                            slopes      sensitivities, against differences of runs
 //!                                                            rates       matrices and equilibria, against the rates of this process
+//!                                                            linear      in other units, against that in its own
 //!                                                            pages       what is printed and emitted: only that it is
 //! ```
 //! What runs in this process at tight tolerances need not run there: the program has its own options, limits, vectors of
@@ -13,6 +14,7 @@
 //! a table that is none are findings whatever the command; other refusals are counted.
 
 mod child;
+mod linear;
 mod members;
 mod pages;
 mod rates;

@@ -146,7 +146,7 @@ impl Units {
     }
 
     /// The power of ten by which a column is larger.
-    fn power(self, specimen: &Specimen, column: &str) -> i32 {
+    pub(super) fn power(self, specimen: &Specimen, column: &str) -> i32 {
         let coordinate = column.strip_suffix('\'').unwrap_or(column);
         match column {
             _ if specimen.chart.iter().any(|x| x.name == coordinate) => self.length,

@@ -58,14 +58,20 @@ impl<'g> Conserved<'g> {
         }
     }
 
-    /// The second variation of the energy at the state of a linearization, under all other functions that are defined
-    /// there; none if the energy is not conserved, or is not smooth there.
-    fn second_variation(&self, linear: &Linearization) -> Option<SecondVariation> {
+    /// The second variation of a conserved function at the state of a linearization, under all others of these that are
+    /// defined there; none if it is not smooth there.
+    fn second_variation(
+        &self,
+        linear: &Linearization,
+        (of, others): (Expr<'g>, &[(String, Expr<'g>)]),
+    ) -> Option<SecondVariation> {
         // What contains a coordinate that is left out is not a function of the others, and changes with it.
         let left_out = |y: &&Expr<'g>| linear.cyclic.iter().any(|(name, _)| *name == y.to_string());
         let left_out: Vec<Expr<'g>> = self.state.iter().filter(left_out).copied().collect();
         let is_own = |f: Expr<'g>| !left_out.iter().any(|&x| f.depends_on(x));
-        let energy = self.energy.filter(|&energy| is_own(energy))?;
+        if !is_own(of) {
+            return None;
+        }
         let state = self.state.iter().copied().zip(linear.state.iter().map(|&(_, y)| y));
         let values: Vec<(Expr<'g>, f64)> = state.chain(self.parameters.iter().copied()).collect();
         let is_smooth = |f: Expr<'g>| {
@@ -74,15 +80,26 @@ impl<'g> Conserved<'g> {
                 .evaluate(&slopes, &values)
                 .is_ok_and(|slopes| slopes.iter().all(|slope| slope.is_finite()))
         };
-        let functions: Vec<_> =
-            self.functions.iter().filter(|&&(_, f)| is_own(f) && is_smooth(f)).cloned().collect();
-        let (of, at) =
-            ((self.graph, energy, functions.as_slice()), (self.state.as_slice(), values.as_slice()));
+        let functions: Vec<_> = others.iter().filter(|&&(_, f)| is_own(f) && is_smooth(f)).cloned().collect();
+        let (of, at) = ((self.graph, of, functions.as_slice()), (self.state.as_slice(), values.as_slice()));
         SecondVariation::among(of, at, Some(&linear.extension)).ok()
     }
 
+    /// Where the energy is not conserved, the first integral with a definite second variation under the others, such as
+    /// Jacobi's in a turning frame, with the variables in which it shows stability.
+    fn definite_integral(&self, linear: &Linearization) -> Option<(String, Option<Vec<String>>)> {
+        let named = || self.functions.iter().enumerate().filter(|(_, (name, _))| !name.is_empty());
+        let decides = |(place, (name, of)): (usize, &(String, Expr<'g>))| {
+            let mut others = self.functions.clone();
+            others.remove(place);
+            let second = self.second_variation(linear, (*of, &others))?;
+            Some((name.clone(), stable_in(&second, linear)?))
+        };
+        if self.energy.is_some() { None } else { named().find_map(decides) }
+    }
+
     /// The stability of the steady state of a linearization without cyclic coordinates: by the eigenvalues (A. M.
-    /// Lyapunov's first method); by the energy, if it has a strict minimum among the states with the same values of all
+    /// Lyapunov's first method); by the energy, or another integral where it is not conserved, if it has a strict minimum among the states with the same values of all
     /// other functions (E. J. Routh); or, if all neighbours in the directions of zero eigenvalues are steady, by the other
     /// eigenvalues (I. G. Malkin). `family` returns the dimension of the family of
     /// steady states.
@@ -99,13 +116,12 @@ impl<'g> Conserved<'g> {
         if verdict != Verdict::Undecided {
             return Ok(Stability::ByFirstApproximation(verdict));
         }
-        let second = self.second_variation(linear);
-        if let Some(second) = second.as_ref().filter(|second| second.verdict == Verdict::Stable) {
-            let is_seen = |name: &String| second.variables.contains(name);
-            let all = linear.components.iter().all(is_seen);
-            let variables =
-                (!all).then(|| linear.components.iter().filter(|name| is_seen(name)).cloned().collect());
+        let second = self.energy.and_then(|energy| self.second_variation(linear, (energy, &self.functions)));
+        if let Some(variables) = second.as_ref().and_then(|second| stable_in(second, linear)) {
             return Ok(Stability::BySecondVariation { variables });
+        }
+        if let Some((name, variables)) = self.definite_integral(linear) {
+            return Ok(Stability::ByIntegral { name, variables });
         }
         let zeros: usize = spectrum.zero_blocks().iter().sum();
         let damped = spectrum.eigenvalues().iter().filter(|value| value.real < 0.0).count();
@@ -115,6 +131,14 @@ impl<'g> Conserved<'g> {
         }
         Ok(Stability::Undecided { second_variation: second.is_some() })
     }
+}
+
+/// The variables in which a state is stable by a second variation, unless they are all components; none if it does not decide.
+fn stable_in(second: &SecondVariation, linear: &Linearization) -> Option<Option<Vec<String>>> {
+    let is_seen = |name: &&String| second.variables.contains(*name);
+    let seen: Vec<String> = linear.components.iter().filter(is_seen).cloned().collect();
+    let is_all = seen.len() == linear.components.len();
+    (second.verdict == Verdict::Stable && !seen.is_empty()).then_some((!is_all).then_some(seen))
 }
 
 impl Linearizer {

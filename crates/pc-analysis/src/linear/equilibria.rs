@@ -102,6 +102,9 @@ pub struct FoundEquilibrium {
 /// distance of it, relative to 1 + |y|, where the rates are below the tolerance of the method.
 const FLAT: f64 = 0.02;
 
+/// The error of the components there, at least: that of a threefold zero of conditions with rounding errors of 1e-12.
+const BLURRED: f64 = 1e-4;
+
 /// The largest number of steps of Newton's method.
 const MOST_STEPS: usize = 60;
 
@@ -188,8 +191,9 @@ impl EquilibriumSearch {
             if list.iter().any(is_flat) {
                 continue;
             }
-            let is_same = |a: &[f64], b: &[f64]| domain.is_same(a, b);
             let of_family = list.iter_mut().find(|known| {
+                let apart = if known.is_flat && found.is_flat { FLAT } else { SAME };
+                let is_same = |a: &[f64], b: &[f64]| domain.distance(a, b) <= apart;
                 known.may_share_a_family(&found)
                     && linearizer.is_in_family(t, (&known.state, &found.state), Family::AtRest, is_same)
             });
@@ -250,7 +254,12 @@ impl EquilibriumSearch {
             Edge { place: i, low, high, is_given: given.is_some() }
         };
         let is_small = linearizer.is_small();
-        Ok(Domain { edges: places.iter().map(edge).collect(), periods, units: linearizer.units.clone(), is_small })
+        Ok(Domain {
+            edges: places.iter().map(edge).collect(),
+            periods,
+            units: linearizer.units.clone(),
+            is_small,
+        })
     }
 }
 
@@ -378,8 +387,9 @@ impl Linearizer {
         let slopes = &found.first_approximation;
         let Ok(rates) = self.motion.rates(t, &found.state) else { return End::Pole };
         let reached = |i: usize| {
-            let of_state: f64 =
-                (0..slopes.columns()).map(|j| slopes[(i, j)].abs() * (self.units[j] + found.state[j].abs())).sum();
+            let of_state: f64 = (0..slopes.columns())
+                .map(|j| slopes[(i, j)].abs() * (self.units[j] + found.state[j].abs()))
+                .sum();
             rates[i].abs() <= FALLING * of_state
         };
         if !(0..rates.len()).all(reached) {
@@ -437,13 +447,15 @@ impl Linearizer {
         let energy = motion.observable_names().iter().position(|name| name == "energy");
         let observed = motion.observe(t, &state);
         let near = self.family(t, &state, Family::AtRest)?;
+        let is_flat = near.neutral > near.family;
+        let uncertainty = if is_flat { uncertainty.max(BLURRED) } else { uncertainty };
         let linearization = self.put_together(t, &state, &cyclic, Some(uncertainty))?;
         Ok(FoundEquilibrium {
             energy: energy.map_or(f64::NAN, |place| observed[place]),
             stability: self.stability(&linearization, conserved)?,
             linearization,
             family: near.family,
-            is_flat: near.neutral > near.family,
+            is_flat,
             members: 1,
             state,
         })

@@ -3,6 +3,7 @@
 use pc_mech::{Matrix, SingularValues};
 
 use crate::error::AnalysisError;
+use crate::linear::leaf::independent_rows;
 use crate::linear::linearizer::Linearizer;
 use crate::linear::search::{Balanced, FEW};
 use crate::linear::statics::Unknowns;
@@ -12,10 +13,10 @@ use crate::stability::steady_motion::SteadyOptions;
 /// Directions of the kernel below this fraction of the largest count as zero.
 const ZERO: f64 = 1e-8;
 
-/// How far along a direction another member of a family is sought, relative to 1 + |y|; it has to be nearer to the point
-/// aimed at than this fraction of the way.
+/// How far along a direction another member of a family is sought, relative to 1 + |y|, and the fraction of the way that it has
+/// to be away: in a direction between that of the family and others it is nearer.
 const AWAY: f64 = 0.02;
-const NEAR: f64 = 0.5;
+const FAR: f64 = 0.25;
 
 /// What the members of a family have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,17 +51,23 @@ impl Linearizer {
     ) -> Result<Neighbours, AnalysisError> {
         let (options, moving) = (self.options_of(kind), self.moving_in(kind));
         let (directions, size) = (self.neutral(t, state, kind)?, 1.0 + norm(&self.in_units(state)));
-        let mut is_family = |direction: &Vec<f64>| {
-            [1.0, -1.0].into_iter().all(|side| {
-                let way = |i: usize| side * AWAY * size * direction[i] * self.units[i];
-                let aim: Vec<f64> = (0..state.len()).map(|i| state[i] + way(i)).collect();
-                let Ok(found) = self.find_on(t, state, &aim, &options, &moving) else { return false };
-                let missed = |i: usize| (found.state[i] - aim[i]) / self.units[i];
-                let seen = (0..state.len()).filter(|i| !self.cyclic.contains(i));
-                norm(&seen.map(missed).collect::<Vec<_>>()) <= NEAR * AWAY * size
-            })
+        let seen: Vec<usize> = (0..state.len()).filter(|i| !self.cyclic.contains(i)).collect();
+        // From an aim beside the family, if a direction leads away from it, the member nearest to the aim is reached.
+        let mut reached = |direction: &[f64], side: f64| {
+            let way = |i: usize| side * AWAY * size * direction[i];
+            let aim: Vec<f64> = (0..state.len()).map(|i| state[i] + way(i) * self.units[i]).collect();
+            let found = self.find_on(t, state, &aim, &options, &moving).ok()?;
+            let moved: Vec<f64> = seen.iter().map(|&i| (found.state[i] - state[i]) / self.units[i]).collect();
+            let missed: Vec<f64> = seen.iter().zip(&moved).map(|(&i, moved)| moved - way(i)).collect();
+            (norm(&missed) <= AWAY * size && norm(&moved) >= FAR * AWAY * size).then_some(moved)
         };
-        let family = directions.iter().filter(|direction| is_family(direction)).count();
+        let across = |direction: &Vec<f64>| {
+            let (there, back) = (reached(direction, 1.0)?, reached(direction, -1.0)?);
+            Some(there.iter().zip(&back).map(|(there, back)| there - back).collect::<Vec<f64>>())
+        };
+        let members: Vec<Vec<f64>> = directions.iter().filter_map(across).collect();
+        let members = Matrix::from_fn(members.len(), seen.len(), |i, j| members[i][j]);
+        let family = independent_rows(&members, FAR * AWAY * size).len();
         Ok(Neighbours { neutral: directions.len(), family })
     }
 

@@ -122,7 +122,13 @@ impl Linearizer {
             return Err(AnalysisError::NoSteadyMotion { residual, iterations: end.iterations, t, state });
         }
         let uncertainty = end.relative_residual().max(end.error);
-        SteadyMotion::at(&mut motion, (t, point.state), &self.units, (&unknowns.moving, &varying), uncertainty)
+        SteadyMotion::at(
+            &mut motion,
+            (t, point.state),
+            &self.units,
+            (&unknowns.moving, &varying),
+            uncertainty,
+        )
     }
 
     /// Solves the conditions of steady motion for the unknowns, by Newton's method from a guess, in at most `most` steps; of a
@@ -241,7 +247,11 @@ impl Linearizer {
         let (components, rest) = values.split_at(unknowns.components.len());
         let (inputs, rest) = rest.split_at(unknowns.inputs.len());
         let (reactions, accelerations) = rest.split_at(point.reactions.len());
-        unknowns.components.iter().zip(components).for_each(|(&i, &value)| point.state[i] = value * self.units[i]);
+        unknowns
+            .components
+            .iter()
+            .zip(components)
+            .for_each(|(&i, &value)| point.state[i] = value * self.units[i]);
         for (&j, &value) in unknowns.inputs.iter().zip(inputs) {
             self.motion.parameters_mut()[self.inputs[j].1] = value;
         }

@@ -5,6 +5,9 @@ use pc_mech::Matrix;
 /// The number of passes in which rows and columns are scaled.
 const PASSES: usize = 12;
 
+/// Entries below this are zero: their inverses, and products of these, would overflow.
+const UNDERFLOW: f64 = 1e-150;
+
 /// The number of turns in which logarithms are balanced: each halves the rest at least, for matrices with few zeros.
 const TURNS: usize = 60;
 
@@ -52,7 +55,7 @@ impl Equilibrated {
     /// for the columns.
     fn logarithmic(matrix: &Matrix<f64>) -> Equilibrated {
         let (m, n) = (matrix.rows(), matrix.columns());
-        let size = matrix.map(|entry| entry.abs().log2());
+        let size = matrix.map(|entry| without_underflow(entry).log2());
         let (mut rows, mut columns) = (vec![0.0; m], vec![0.0; n]);
         for _ in 0..TURNS {
             rows = (0..m).map(|i| -mean((0..n).map(|j| size[(i, j)] + columns[j]))).collect();
@@ -71,7 +74,7 @@ impl Equilibrated {
         };
         for _ in 0..PASSES {
             let (m, n) = (matrix.rows(), matrix.columns());
-            let entry = |i: usize, j: usize| all.matrix[(i, j)].abs();
+            let entry = |i: usize, j: usize| without_underflow(all.matrix[(i, j)]);
             let rows: Vec<f64> = (0..m).map(|i| factor((0..n).map(|j| entry(i, j)))).collect();
             let columns: Vec<f64> = (0..n).map(|j| factor((0..m).map(|i| entry(i, j)))).collect();
             if rows.iter().chain(&columns).all(|&factor| factor == 1.0) {
@@ -83,6 +86,12 @@ impl Equilibrated {
         }
         all
     }
+}
+
+/// The size of an entry; of one that products on their way to underflow have left, zero: no scale makes it about one.
+fn without_underflow(entry: f64) -> f64 {
+    let size = entry.abs();
+    if size < UNDERFLOW { 0.0 } else { size }
 }
 
 /// The mean of the numbers that are finite, zero if there are none.

@@ -106,10 +106,31 @@ impl SecondVariation {
             directions.map(|all| Matrix::from_fn(places.len(), all.columns(), |i, j| all[(places[i], j)]));
         let size = 1.0 + norm(&values.iter().take(state.len()).map(|&(_, y)| y).collect::<Vec<_>>());
         let names = conserved.iter().map(|(name, _)| name.clone());
-        let mut result = decide(&expansions, size, directions.as_ref())?;
+        // In units of their own no function hides another.
+        let units: Vec<f64> = expansions.iter().map(|expansion| expansion.unit(size)).collect();
+        let scaled: Vec<Expansion> =
+            expansions.iter().zip(&units).map(|(expansion, unit)| expansion.divided_by(*unit)).collect();
+        let mut result = decide(&scaled, size, directions.as_ref())?;
         result.variables = variables.iter().map(Expr::to_string).collect();
-        result.multipliers = names.zip(result.multipliers).map(|(name, (_, value))| (name, value)).collect();
+        let multipliers = names.zip(result.multipliers).zip(&units[1..]);
+        result.multipliers =
+            multipliers.map(|((name, (_, value)), unit)| (name, value * units[0] / unit)).collect();
+        result.eigenvalues.iter_mut().for_each(|value| *value *= units[0]);
+        result.tolerance *= units[0];
         Ok(result)
+    }
+}
+
+impl Expansion {
+    /// About the size of the function near a state of this `size`: a power of two, so that nothing is rounded.
+    fn unit(&self, size: f64) -> f64 {
+        let largest = norm(&self.gradient).max(norm(&self.hessian.entries()) * size);
+        if largest > 0.0 && largest.is_finite() { largest.log2().round().exp2() } else { 1.0 }
+    }
+
+    fn divided_by(&self, unit: f64) -> Expansion {
+        let gradient = self.gradient.iter().map(|slope| slope / unit).collect();
+        Expansion { gradient, hessian: self.hessian.map(|entry| entry / unit) }
     }
 }
 

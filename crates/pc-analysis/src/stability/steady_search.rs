@@ -60,6 +60,13 @@ pub enum Stability {
         /// The variables of the criterion, unless they are all components that are not cyclic.
         variables: Option<Vec<String>>,
     },
+    /// The motion is stable by the second variation of a declared integral: the energy is not conserved.
+    ByIntegral {
+        /// The name of the integral.
+        name: String,
+        /// The variables of the criterion, unless they are all components that are not cyclic.
+        variables: Option<Vec<String>>,
+    },
     /// By the first approximation the motion is asymptotically stable, except in neutral directions.
     AsymptoticBut {
         /// The number of neutral directions.

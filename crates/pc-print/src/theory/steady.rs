@@ -220,7 +220,8 @@ fn near_entry<'g>(linear: &Linearization, stability: &Stability) -> Entry<'g> {
 /// The verdict that a stability is.
 fn verdict(stability: &Stability, eigenvalues: &[Eigenvalue]) -> Verdict {
     match stability {
-        Stability::BySecondVariation { .. } | Stability::AsymptoticBut { .. } => Verdict::Proved,
+        Stability::BySecondVariation { .. } | Stability::ByIntegral { .. } => Verdict::Proved,
+        Stability::AsymptoticBut { .. } => Verdict::Proved,
         Stability::ByFirstApproximation(Of::Stable | Of::AsymptoticallyStable) => Verdict::Proved,
         Stability::ByFirstApproximation(Of::Unstable) => {
             let growth = eigenvalues.iter().map(|value| value.real).fold(0.0, f64::max);
@@ -232,12 +233,14 @@ fn verdict(stability: &Stability, eigenvalues: &[Eigenvalue]) -> Verdict {
 
 /// The stability in words, with the criterion that shows it.
 pub fn stability_in_words(stability: &Stability) -> String {
+    let by_second_variation = |variables: &Option<Vec<String>>, of: &str| {
+        let seen = variables.as_ref().map_or(String::new(), |all| format!(" in {}", all.join(", ")));
+        format!("stable{seen}, by the second variation of {of}")
+    };
     match stability {
-        Stability::BySecondVariation { variables: None } => {
-            "stable, by the second variation of the energy".to_owned()
-        }
-        Stability::BySecondVariation { variables: Some(variables) } => {
-            format!("stable in {}, by the second variation of the energy", variables.join(", "))
+        Stability::BySecondVariation { variables } => by_second_variation(variables, "the energy"),
+        Stability::ByIntegral { name, variables } => {
+            by_second_variation(variables, &format!("the integral {name}"))
         }
         Stability::AsymptoticBut { directions } => {
             let directions = match directions {
