@@ -214,7 +214,9 @@ fn cofactor_inverse<'g>(graph: &'g Graph, a: &Matrix<Expr<'g>>) -> Option<Matrix
     // For links given by their directions these are sines of the angles between them.
     let short = |minor: Expr<'g>| graph.merged_angles(&[minor])[0];
     let determinant = short(minor(graph, a, &all, &all));
-    if Neighbourhood::anywhere(graph, &[determinant]).vanishes(graph, determinant) {
+    // Products of small units look like rounding errors, until the rows have units of their own.
+    let vanishes = |of: Expr<'g>| Neighbourhood::anywhere(graph, &[of]).vanishes(graph, of);
+    if vanishes(determinant) && vanishes(short(minor(graph, &in_own_units(graph, a), &all, &all))) {
         return None;
     }
     let without = |skip: usize| -> Vec<usize> { (0..m).filter(|&i| i != skip).collect() };
@@ -223,6 +225,18 @@ fn cofactor_inverse<'g>(graph: &'g Graph, a: &Matrix<Expr<'g>>) -> Option<Matrix
         let signed = if (i + j).is_multiple_of(2) { cofactor } else { -cofactor };
         signed / determinant
     }))
+}
+
+/// The matrix with each row divided by the power of two that is nearest to its largest entry at one point.
+fn in_own_units<'g>(graph: &'g Graph, a: &Matrix<Expr<'g>>) -> Matrix<Expr<'g>> {
+    let sample = Neighbourhood::anywhere(graph, &a.entries()).sample::<f64>(graph, &a.entries(), 1);
+    let sizes = sample.unwrap_or_default();
+    let unit = |i: usize| {
+        let row = sizes.iter().skip(i * a.columns()).take(a.columns());
+        let largest = row.fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
+        if largest.is_normal() { largest.log2().round().exp2() } else { 1.0 }
+    };
+    Matrix::from_fn(a.rows(), a.columns(), |i, j| a[(i, j)] / unit(i))
 }
 
 /// The inverse A⁻¹ = U⁻¹ D⁻¹ Qᵀ, where A = Q U, the columns of Q are orthogonal, D = QᵀQ and U is unit upper
@@ -393,6 +407,20 @@ mod tests {
         let rows = [[Expr::from(1e-10), Expr::ZERO], [y, x]];
         let b = inverse(&graph, &Matrix::from_fn(2, 2, |i, j| rows[i][j])).unwrap();
         assert_eq!(b.to_rows(), [[Expr::from(1e10), Expr::ZERO], [-1e10 * y / x, x.powi(-1)]]);
+    }
+
+    /// The determinant is 10⁻¹⁵ sin x sin y, and 10⁻¹⁵ could be a rounding error.
+    #[test]
+    fn products_of_small_units_are_no_rounding_error() {
+        let graph = Graph::new();
+        let [x, y] = graph.symbols(["x", "y"]);
+        let small = Expr::from(1e-5 * 2f64.sqrt());
+        let rows = [
+            [small * x.sin(), small, Expr::ZERO],
+            [Expr::ZERO, small * y.sin(), small * x],
+            [Expr::ZERO, Expr::ZERO, small],
+        ];
+        assert!(cofactor_inverse(&graph, &Matrix::from_fn(3, 3, |i, j| rows[i][j])).is_some());
     }
 
     /// √2·√2 − 2 is 0, though not in floating point.

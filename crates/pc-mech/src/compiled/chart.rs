@@ -1,7 +1,7 @@
 //! States where velocities and the quasi-velocities defined by them no longer determine each other.
 
 use pc_algebra::Matrix;
-use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
+use pc_expr::{Backend, Evaluator, Expr, Graph, Inputs, Program};
 
 use crate::error::MechError;
 use crate::numeric::singular_values::SingularValues;
@@ -28,13 +28,15 @@ const SECTIONS: usize = 45;
 /// same way. Between the ends of a step, states are taken on the straight line between them, which crosses
 /// each surface that separates them.
 ///
-/// Quasi-velocities defined by b are not watched: the determinant of b would cost as much as a step of a
-/// small system.
+/// Only ratios of determinants count, so that constant factors are left out; of a disk that rolls cos θ remains. Quasi-velocities
+/// defined by b are not watched: the determinant of b would cost as much as a step of a small system.
 #[derive(Clone, Debug)]
 pub(crate) struct Chart {
     coordinates: usize,
     parameters: usize,
     entries: Evaluator,
+    /// The determinant without constant factors, if it is a short expression.
+    short: Option<Evaluator>,
     /// The number of rows of the matrix, and whether its columns belong to ẋ.
     size: usize,
     of_velocities: bool,
@@ -55,7 +57,7 @@ pub(crate) enum Passage {
 }
 
 impl Chart {
-    /// The chart of a system; `None` if its quasi-velocities are not defined by velocities, or a is constant.
+    /// The chart of a system; `None` if its quasi-velocities are not defined by velocities, or det a is constant.
     ///
     /// # Errors
     /// [`MechError`] for a symbol without a value.
@@ -87,7 +89,7 @@ impl Chart {
     }
 
     /// The chart that watches a square matrix through which some quasi-velocities determine others; `None` if
-    /// the matrix is constant.
+    /// its determinant is constant.
     pub(crate) fn watching<'g>(
         system: &System<'g>,
         a: &Matrix<Expr<'g>>,
@@ -102,7 +104,8 @@ impl Chart {
     ) -> Result<Option<Chart>, MechError> {
         let frame = system.frame();
         let moving = || frame.coordinates().iter().copied().chain([frame.time()]);
-        let written = a.nonzero_entries();
+        let short = short_determinant(system.graph(), a);
+        let written = short.map_or_else(|| a.nonzero_entries(), |determinant| vec![determinant]);
         if !moving().any(|symbol| written.iter().any(|entry| entry.depends_on(symbol))) {
             return Ok(None);
         }
@@ -111,14 +114,17 @@ impl Chart {
             state: frame.coordinates().to_vec(),
             parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
         };
-        let program = Program::new(system.graph(), &inputs, &a.entries())?;
-        let entries = Evaluator::new(program, Backend::Interpreter);
+        let evaluator = |outputs: &[Expr<'g>]| -> Result<Evaluator, MechError> {
+            Ok(Evaluator::new(Program::new(system.graph(), &inputs, outputs)?, Backend::Interpreter))
+        };
+        let entries = evaluator(&a.entries())?;
+        let short = short.map(|determinant| evaluator(&[determinant])).transpose()?;
         let (coordinates, parameters) = (inputs.state.len(), inputs.parameters.len());
         let size = a.rows();
         let room = vec![0.0; size * size];
         let between = vec![0.0; coordinates];
         let last = Vec::with_capacity(coordinates + parameters + 2);
-        Ok(Some(Chart { coordinates, parameters, entries, size, of_velocities, room, between, last }))
+        Ok(Some(Chart { coordinates, parameters, entries, short, size, of_velocities, room, between, last }))
     }
 
     /// The matrix at (t, x), row by row.
@@ -128,6 +134,11 @@ impl Chart {
     }
 
     fn determinant(&mut self, t: f64, x: &[f64], parameters: &[f64]) -> f64 {
+        if let Some(short) = &mut self.short {
+            let mut value = [0.0];
+            short.eval(t, &x[..self.coordinates], &parameters[..self.parameters], &mut value);
+            return value[0];
+        }
         let n = self.size;
         determinant(self.matrix(t, x, parameters), n)
     }
@@ -230,6 +241,35 @@ impl Chart {
     }
 }
 
+/// The determinant of a square matrix without constant factors; `None` if it is a long expression. Rows and columns with a single
+/// entry are expanded along it.
+fn short_determinant<'g>(graph: &'g Graph, a: &Matrix<Expr<'g>>) -> Option<Expr<'g>> {
+    let (mut rows, mut columns): (Vec<usize>, Vec<usize>) =
+        ((0..a.rows()).collect(), (0..a.rows()).collect());
+    let mut factors = Vec::new();
+    while let Some((i, j)) = lone_entry(a, &rows, &columns) {
+        factors.push(a[(i, j)]);
+        rows.retain(|&row| row != i);
+        columns.retain(|&column| column != j);
+    }
+    factors.push(pc_algebra::determinant(
+        graph,
+        &Matrix::from_fn(rows.len(), rows.len(), |i, j| a[(rows[i], columns[j])]),
+    )?);
+    let varying = factors.into_iter().filter(|factor| factor.constant().is_none());
+    let product = varying.fold(Expr::ONE, |product, factor| product * factor);
+    Some(graph.merged_angles(&[product])[0])
+}
+
+/// The place of an entry that is the only one of its row or column.
+fn lone_entry(a: &Matrix<Expr<'_>>, rows: &[usize], columns: &[usize]) -> Option<(usize, usize)> {
+    let is_entry = |i: usize, j: usize| !a[(i, j)].is_zero();
+    let only = |mut places: Vec<(usize, usize)>| if places.len() == 1 { places.pop() } else { None };
+    let of_row = |&i: &usize| only(columns.iter().filter(|&&j| is_entry(i, j)).map(|&j| (i, j)).collect());
+    let of_column = |&j: &usize| only(rows.iter().filter(|&&i| is_entry(i, j)).map(|&i| (i, j)).collect());
+    rows.iter().find_map(of_row).or_else(|| columns.iter().find_map(of_column))
+}
+
 /// The minimum of a function that falls and then rises between 0 and 1, by golden sections.
 fn smallest(mut f: impl FnMut(f64) -> f64) -> f64 {
     let part = 0.5 * (5.0f64.sqrt() - 1.0);
@@ -288,6 +328,26 @@ mod tests {
         // 1 (4·1 − 1·2) − 2 (3·1 − 1·1) + 0 = −2, by three roundings of numbers below 4
         assert!((of([[1.0, 2.0, 0.0], [3.0, 4.0, 1.0], [1.0, 2.0, 1.0]]) + 2.0).abs() < 1e-14);
         assert_eq!(of([[1.0, 2.0, 0.0], [2.0, 4.0, 0.0], [1.0, 2.0, 1.0]]), 0.0);
+    }
+
+    #[test]
+    fn the_determinant_of_definitions_by_angles_is_short() {
+        // A disk on its contact: ω1 = θ', ω2 = φ' cos θ, ω3 = φ' sin θ + ψ', and 2 ẋ = 0.
+        let graph = Graph::new();
+        let theta = graph.symbol("θ");
+        let (zero, one) = (Expr::ZERO, Expr::ONE);
+        let rows = [
+            [one, zero, zero, zero],
+            [zero, theta.cos(), zero, zero],
+            [zero, theta.sin(), one, zero],
+            [zero, zero, zero, Expr::from(2.0)],
+        ];
+        let a = Matrix::from_fn(4, 4, |i, j| rows[i][j]);
+        assert_eq!(short_determinant(&graph, &a), Some(theta.cos()));
+        // Axes that turn have a constant one.
+        let turned = [[theta.cos(), theta.sin()], [-theta.sin(), theta.cos()]];
+        let turned = short_determinant(&graph, &Matrix::from_fn(2, 2, |i, j| turned[i][j]));
+        assert!(turned.is_some_and(|determinant| !determinant.depends_on(theta)));
     }
 
     #[test]

@@ -18,6 +18,8 @@ from chetaev._results.sweep import Sweep, swept
 from chetaev._results.values import Values
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     import numpy as np
     import numpy.typing as npt
 
@@ -406,6 +408,8 @@ class System(_native.System):
         rows: int | None = None,
         threads: int | None = None,
         progress: bool = False,
+        executor: Executor | None = None,
+        block: int | None = None,
         **settings: Any,
     ) -> Sweep:
         """Integrates many motions, for varied parameters and start values, on all cores.
@@ -431,6 +435,12 @@ class System(_native.System):
             Number of threads; by default as many as there are cores.
         progress : bool
             Whether to show progress, with tqdm where it is installed.
+        executor : concurrent.futures.Executor, optional
+            What computes blocks of members instead of the threads of this process: a ``ProcessPoolExecutor``, dask's
+            ``client.get_executor()``, mpi4py's ``MPIPoolExecutor``, or any other. The result is the same to the last bit; blocks that
+            are lost with their worker are done again.
+        block : int, optional
+            How many members are one task of the executor, rounded up to a multiple of 16; by default a 1024th of all, at most 8192.
         **settings
             ``method``, ``rtol``, ``atol``, ``max_step``, ``samples_per_step``, ``accumulation``, ``limit_time`` as for :meth:`run`. The
             first member, one in the middle and the last are compared with a second derivation unless ``verify=False``.
@@ -443,7 +453,7 @@ class System(_native.System):
         (3,)
         """
         only("System.sweep", settings, (*_STEPS, "verify"))
-        return swept(self, vary, random, members, seed, t_end, rows, threads, progress, settings)
+        return swept(self, vary, random, members, seed, t_end, rows, threads, progress, executor, block, settings)
 
     def trim(self, free: str | Sequence[str] | None = None) -> Trim:
         """A state of rest or steady motion, found by choosing some inputs and components of the state.

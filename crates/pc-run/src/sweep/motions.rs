@@ -73,7 +73,7 @@ impl Motions {
         let columns = shown.in_rows(!all_rows);
         Ok(Motions {
             members: Members::new(model, design, columns),
-            times: plan.times(),
+            times: if all_rows { plan.times() } else { sparse(&plan) },
             options: plan.options(&tolerances),
             tolerances,
             all_rows,
@@ -224,6 +224,17 @@ impl Work for Motions {
         }
     }
 }
+
+/// The times at which a member is looked at of which only the last row is kept, for the drifts.
+fn sparse(plan: &Plan) -> Vec<f64> {
+    match plan.at {
+        Some(_) => plan.times(),
+        None => Plan { samples: plan.samples.min(LOOKS), ..plan.clone() }.times(),
+    }
+}
+
+/// How often, start and end included: a row costs as much as some steps of a small system.
+const LOOKS: usize = 5;
 
 /// The columns of a motion, and which of them should stay constant.
 struct Columns {

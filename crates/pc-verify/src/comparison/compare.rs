@@ -382,6 +382,14 @@ impl Second {
         let (wanted, exact) = (first.quantities(), Rounding::none());
         let free = first.free.clone();
         let mut seconds = self.derivation.quantities(&here.derived, &wanted, free.as_deref(), &exact)?;
+        // Where all terms of one quantity vanish, numbers that are on their way to underflow remain of others.
+        let least = NOTHING
+            * seconds
+                .iter()
+                .map(|quantity| quantity.size)
+                .filter(|size| size.is_finite())
+                .fold(0.0, f64::max);
+        seconds.iter_mut().for_each(|quantity| quantity.size = quantity.size.max(least));
         let values = first.values(&self.derivation, here, &exact)?;
         let mut noise = vec![0.0; values.len()];
         if !values.iter().zip(&seconds).all(|(&one, &two)| error(one, two) <= ORDINARY) {
@@ -499,6 +507,9 @@ impl Second {
         }))
     }
 }
+
+/// What is smaller than the largest terms of all quantities by this factor is nothing beside them.
+const NOTHING: f64 = 1e-20;
 
 /// The difference of two values relative to the size of their terms; zero if the difference is subnormal.
 pub(crate) fn error(one: f64, two: Sized) -> f64 {

@@ -11,6 +11,9 @@ use super::{MODEL, Session, Tally};
 /// Of the largest eigenvalue: a fourfold one is off by the fourth root of 1e-14.
 const EIGENVALUE: f64 = 1e-3;
 
+/// An eigenvalue below this is a zero that is split: rates are about 1.
+const SPLIT: f64 = 1e-5;
+
 /// The equilibrium near the start, as far as it is the same in all units.
 struct Rest {
     state: Vec<(String, f64)>,
@@ -37,9 +40,10 @@ impl Rest {
     /// What another finds of the same equilibrium that is not the same.
     fn difference(&self, other: &Rest) -> Option<String> {
         let largest = self.eigenvalues.iter().fold(0.0, |size, (re, im)| f64::max(size, re.hypot(*im)));
+        let apart = (EIGENVALUE * largest).max(SPLIT);
         let mut rest = other.eigenvalues.clone();
         for &(re, im) in &self.eigenvalues {
-            let near = rest.iter().position(|(r, i)| (r - re).hypot(i - im) <= EIGENVALUE * largest);
+            let near = rest.iter().position(|(r, i)| (r - re).hypot(i - im) <= apart);
             let Some(near) = near else {
                 return Some(format!(
                     "eigenvalue {re:?} + {im:?}i of {:?} is not among {rest:?}",
@@ -49,6 +53,16 @@ impl Rest {
             rest.swap_remove(near);
         }
         (!rest.is_empty()).then(|| format!("eigenvalues {rest:?} are new at {:?}", other.state))
+    }
+}
+
+impl Rest {
+    /// Whether one is said to be stable and the other is not; which criteria decide depends on what is independent.
+    fn contradicts(&self, other: &Rest) -> bool {
+        let says = |word: &str, rest: &Rest| rest.stability.starts_with(word);
+        let is_unstable = |rest: &Rest| says("unstable", rest);
+        let is_stable = |rest: &Rest| says("stable", rest) || says("asymptotically", rest);
+        (is_unstable(self) && is_stable(other)) || (is_stable(self) && is_unstable(other))
     }
 }
 
@@ -80,7 +94,7 @@ impl Session {
             Ok(Ok(there)) => {
                 if let Some(detail) = here.difference(&there) {
                     tally.find("eigenvalues differ in other units", format!("{detail}\n{in_other_units}"));
-                } else if here.stability != there.stability {
+                } else if here.contradicts(&there) {
                     let detail = format!(
                         "{} at {:?}, {} at {:?}\n{in_other_units}",
                         here.stability, here.state, there.stability, there.state

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from chetaev import _native
 from chetaev._language.arguments import whole
 from chetaev._language.errors import ChetaevError, UnknownNameError
+from chetaev._results.workers import block_size, by_workers
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     import numpy as np
     import numpy.typing as npt
 
@@ -92,10 +95,19 @@ def swept(
     rows: int | None,
     threads: int | None,
     progress: bool,
+    executor: Executor | None,
+    block: int | None,
     settings: dict[str, Any],
 ) -> Sweep:
     """Carries out :meth:`System.sweep`."""
     import numpy as np
+
+    if executor is None and block is not None:
+        raise ChetaevError("a block is what one task of an executor computes: give an executor")
+    if executor is not None and threads is not None:
+        raise ChetaevError("each worker of an executor has one thread; threads are those of this process")
+    if block is not None and whole("block", block) < 1:
+        raise ValueError("a block has at least 1 member")
 
     if rows is not None and whole("rows", rows) < 2:
         raise ValueError("rows are at least 2, the start and the end; without them there is the end of each motion")
@@ -128,7 +140,17 @@ def swept(
         called = lambda done: bar.update(done - bar.n)  # noqa: E731
     try:
         all_rows = rows is not None
-        found = system._ensemble(list(names), values.ravel().tolist(), wished, all_rows, threads, verify, called)
+
+        def here(of: Floats, verify: bool | None, called: Callable[[int], Any] | None) -> _native._Swept:
+            return system._ensemble(list(names), of.ravel().tolist(), wished, all_rows, threads, verify, called)
+
+        if executor is None:
+            found = here(values, verify, called)
+        else:
+            if verify is not False:
+                here(values[[0, len(values) // 2, -1]], verify, None)
+            size = block_size(len(values), block)
+            found = by_workers(executor, system, list(names), values, wished, all_rows, size, called)
     finally:
         if bar is not None:
             bar.close()
