@@ -99,7 +99,6 @@ impl Linearizer {
         options: &SteadyOptions,
         cyclic: CyclicCoordinates,
     ) -> Result<Linearization, AnalysisError> {
-        self.measure_by(t, guess);
         let found = self.find(t, guess, options)?;
         let left_out = match cyclic {
             CyclicCoordinates::LeftOut => self.cyclic.clone(),
@@ -119,7 +118,6 @@ impl Linearizer {
     /// [`ShapeError`](pc_mech::ShapeError); the errors of [`rhs`](pc_mech::VectorField::rhs) if f is not defined.
     pub fn at(&mut self, t: f64, state: &[f64]) -> Result<Linearization, AnalysisError> {
         shape("the state", state.len(), self.names().len())?;
-        self.measure_by(t, state);
         let rates = self.motion.rates(t, state)?;
         let jacobian = first_approximation(&mut self.motion, t, state)?;
         let enough = AT_REST * norm(&jacobian.entries()) * (1.0 + norm(state));

@@ -65,7 +65,6 @@ impl Linearizer {
         if self.depends_on_time() {
             return Err(AnalysisError::DependsOnTime);
         }
-        self.measure_by(t, guess);
         let unknowns = self.unknowns(free)?;
         if unknowns.components.iter().any(|&i| i < self.sizes.coordinates) {
             self.check_searchable(t, guess)?;
@@ -91,7 +90,7 @@ impl Linearizer {
         let kept: Vec<usize> = (0..state.len()).filter(|i| !self.cyclic.contains(i)).collect();
         let slopes = first_approximation(&mut self.motion, t, &state)?;
         let slopes = Matrix::from_fn(kept.len(), kept.len(), |i, j| slopes[(kept[i], kept[j])]);
-        check_smooth(&mut self.motion, t, (&state, &self.units, end.error), &kept, &slopes)?;
+        check_smooth(&mut self.motion, t, (&state, &self.units), &kept, &slopes)?;
         let (rates, parameters) = (self.motion.rates(t, &state)?, self.motion.parameters());
         Ok(Trim {
             inputs: self.inputs.iter().map(|(name, place)| (name.clone(), parameters[*place])).collect(),

@@ -202,7 +202,7 @@ impl SteadyMotion {
         let rates = motion.rates(t, &state)?;
         let whole = first_approximation(motion, t, &state)?;
         let matrix = part(&whole, &kept, &kept);
-        check_smooth(motion, t, (&state, units, uncertainty), &kept, &matrix)?;
+        check_smooth(motion, t, (&state, units), &kept, &matrix)?;
         let noise = part(&errors(motion, (t, &state), units, &whole, uncertainty), &kept, &kept);
         let is_constant = |i: &&usize| !varying.contains(i);
         Ok(SteadyMotion {
@@ -272,15 +272,11 @@ const BESIDE: f64 = 1e-7;
 const FARTHER: f64 = 1e-2;
 const AS_THERE: f64 = 1e-3;
 
-/// A smaller distance, and how many times larger than at the first one the slopes may be.
-const CLOSE: f64 = 1e-11;
-const RISEN: f64 = 4.0;
-
-/// Checks that the slopes of the rates are continuous at the state, which has this relative `uncertainty`.
+/// Checks that the slopes of the rates are continuous at the state.
 pub(crate) fn check_smooth(
     motion: &mut Motion,
     t: f64,
-    (state, units, uncertainty): (&[f64], &[f64], f64),
+    (state, units): (&[f64], &[f64]),
     kept: &[usize],
     slopes: &Matrix<f64>,
 ) -> Result<(), AnalysisError> {
@@ -300,16 +296,6 @@ pub(crate) fn check_smooth(
     };
     let beside = [BESIDE, -BESIDE].map(&mut at);
     if beside.iter().all(|there| there.as_ref().is_ok_and(is_near)) {
-        return Ok(());
-    }
-    // In a system that is small against its units slopes change within that distance, too, but they do not rise towards the
-    // state as they do towards a pole. Of a state next to a pole Newton's method leaves more uncertain than that.
-    let rises = |there: &Matrix<f64>| largest(slopes) > RISEN * largest(there);
-    let is_certain = uncertainty < CLOSE / 10.0;
-    let is_regular = is_certain && beside.iter().all(|there| there.as_ref().is_ok_and(|there| !rises(there)));
-    if is_regular
-        && [CLOSE, -CLOSE].into_iter().all(|distance| at(distance).is_ok_and(|there| is_near(&there)))
-    {
         return Ok(());
     }
     let state = motion.names().iter().cloned().zip(state.iter().copied()).collect();

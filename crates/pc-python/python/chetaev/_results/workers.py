@@ -62,27 +62,33 @@ def by_workers(
     bytes_of_system = pickle.dumps(system)
     blocks = [values[place : place + size] for place in range(0, len(values), size)]
 
-    def submitted(block: Floats) -> Future[_native._Swept]:
-        return executor.submit(work, bytes_of_system, names, block, wished, all_rows)
+    lost: list[Exception] = []
+
+    def submitted(block: Floats) -> Future[_native._Swept] | None:
+        """A future, or none from an executor that takes no work any more."""
+        try:
+            return executor.submit(work, bytes_of_system, names, block, wished, all_rows)
+        except RuntimeError as error:
+            lost.append(error)
+            return None
+
+    def done_by(future: Future[_native._Swept] | None) -> _native._Swept | None:
+        """The motions of a block, or none if they are lost."""
+        try:
+            return future.result() if future is not None else None
+        except ChetaevError:
+            raise
+        except Exception as error:
+            lost.append(error)
+            return None
 
     futures: list[Future[_native._Swept] | None] = []
     try:
         for block in blocks:
-            futures.append(_or_none(submitted, block))
-        results, done, lost = [], 0, None
-        for place, (block, future) in enumerate(zip(blocks, futures)):
-            result = None
-            for attempt in (future, None):
-                attempt = attempt or _or_none(submitted, block)
-                if attempt is None:
-                    break
-                try:
-                    result = attempt.result()
-                    break
-                except ChetaevError:
-                    raise
-                except Exception as error:
-                    lost = error
+            futures.append(submitted(block))
+        results, done = [], 0
+        for place, block in enumerate(blocks):
+            result = done_by(futures[place]) or done_by(submitted(block))
             results.append(result or work(bytes_of_system, names, block, wished, all_rows))
             futures[place] = None
             done += len(block)
@@ -93,8 +99,8 @@ def by_workers(
             if future is not None:
                 future.cancel()
         raise
-    if lost is not None:
-        warnings.warn(f"blocks of members were lost and done again: {lost!r}", RuntimeWarning, stacklevel=4)
+    if lost:
+        warnings.warn(f"blocks of members were lost and done again: {lost[0]!r}", RuntimeWarning, stacklevel=4)
     return {
         "status": [status for result in results for status in result["status"]],
         "message": [message for result in results for message in result["message"]],
@@ -102,10 +108,3 @@ def by_workers(
         "values": np.concatenate([result["values"] for result in results]),
     }
 
-
-def _or_none(submitted: Callable[[Floats], Future[_native._Swept]], block: Floats) -> Future[_native._Swept] | None:
-    """A future, or none from an executor that takes no work any more."""
-    try:
-        return submitted(block)
-    except RuntimeError:
-        return None
