@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import chetaev
+from chetaev._results import workers
 
 DRAWN: dict[str, Any] = {"random": {"mg": ("uniform", 0.5, 2.0)}, "members": 100, "seed": 7, "t_end": 1.0}
 
@@ -35,6 +36,28 @@ def test_processes_give_the_same_bytes(settings: dict[str, Any]) -> None:
     with concurrent.futures.ProcessPoolExecutor(2) as pool:
         assert_same(system().sweep(**DRAWN, executor=pool, block=20, **settings), expected)
         assert_same(system().sweep(**DRAWN, executor=pool, **settings), expected)
+
+
+def test_another_thread_may_have_another_system_meanwhile(monkeypatch: pytest.MonkeyPatch) -> None:
+    own, other = (chetaev.Model.builtin("heavy-top-lagrange").system(parameters={"I3": i3}) for i3 in (0.6, 1.2))
+    expected = own.sweep(**DRAWN)
+    work = workers.work
+
+    def interrupted(*arguments: Any) -> Any:
+        def at_each_line(frame: Any, event: str, _: Any) -> Any:
+            if event == "line":
+                workers._known = (b"another", other)  # as by a thread that comes in between
+            return at_each_line
+
+        sys.settrace(lambda frame, event, _: at_each_line if frame.f_code is work.__code__ else None)
+        try:
+            return work(*arguments)
+        finally:
+            sys.settrace(None)
+
+    monkeypatch.setattr(workers, "work", interrupted)
+    monkeypatch.setattr(workers, "_known", None)
+    assert_same(own.sweep(**DRAWN, executor=Sequential(lambda _: None), verify=False), expected)
 
 
 class Sequential(concurrent.futures.Executor):

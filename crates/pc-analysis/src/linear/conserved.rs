@@ -99,9 +99,9 @@ impl<'g> Conserved<'g> {
     }
 
     /// The stability of the steady state of a linearization without cyclic coordinates: by the eigenvalues (A. M.
-    /// Lyapunov's first method); by the energy, or another integral where it is not conserved, if it has a strict minimum among the states with the same values of all
-    /// other functions (E. J. Routh); or, if all neighbours in the directions of zero eigenvalues are steady, by the other
-    /// eigenvalues (I. G. Malkin). `family` returns the dimension of the family of
+    /// Lyapunov's first method); by the energy, or another integral where it is not conserved, if it has a strict minimum
+    /// among the states with the same values of all other functions (E. J. Routh); or, if all neighbours in the directions of
+    /// zero eigenvalues are steady, by the other eigenvalues (I. G. Malkin). `family` returns the dimension of the family of
     /// steady states.
     ///
     /// # Errors

@@ -40,9 +40,10 @@ def block_size(members: int, wished: int | None) -> int:
 def work(system: bytes, names: list[str], values: Floats, wished: dict[str, Any], all_rows: bool) -> _native._Swept:
     """The motions of a block, in a worker."""
     global _known
-    if _known is None or _known[0] != system:
-        _known = (system, pickle.loads(system))
-    return _known[1]._ensemble(names, values.ravel().tolist(), wished, all_rows, 1, False, None)
+    known = _known  # threads of one process may have other systems at the same time
+    if known is None or known[0] != system:
+        known = _known = (system, pickle.loads(system))
+    return known[1]._ensemble(names, values.ravel().tolist(), wished, all_rows, 1, False, None)
 
 
 def by_workers(
@@ -61,7 +62,6 @@ def by_workers(
 
     bytes_of_system = pickle.dumps(system)
     blocks = [values[place : place + size] for place in range(0, len(values), size)]
-
     lost: list[Exception] = []
 
     def submitted(block: Floats) -> Future[_native._Swept] | None:
