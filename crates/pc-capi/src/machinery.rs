@@ -2,8 +2,8 @@
 //!
 //! Read `exclusive` first, which guards values that one call at a time may use; then `controller`,
 //! the functions of the program that compute forces, and `motion_field`, the vector field that is
-//! integrated, with or without them; `lock_free_rhs`, f(t, y) computed by machine code alone, and
-//! `mechanics`, the parts of the equations; `system` puts all these behind a handle. `engine` is an
+//! integrated, with or without them; `lock_free_rhs`, f(t, y) computed by machine code alone for
+//! any number of threads, `own_rhs`, the same for one thread, and `mechanics`, the parts of the equations; `system` puts all these behind a handle. `engine` is an
 //! integration with a record of its events, `event_set` the events it follows. `draft` is a model
 //! built call by call.
 
@@ -15,4 +15,5 @@ pub(crate) mod exclusive;
 pub(crate) mod lock_free_rhs;
 pub(crate) mod mechanics;
 pub(crate) mod motion_field;
+pub(crate) mod own_rhs;
 pub(crate) mod system;

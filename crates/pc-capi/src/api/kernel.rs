@@ -11,8 +11,8 @@ use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{are_usable, clear, free, fresh, numbers, write};
 use crate::ffi::status::pc_status;
-use crate::machinery::lock_free_rhs::Direct;
 use crate::machinery::motion_field::MotionField;
+use crate::machinery::own_rhs::Own;
 use crate::machinery::system::{Inner, holding, pc_system};
 
 /// f(t, y) for an integrator of your own: the context of pc_kernel_rhs and pc_kernel_jacobian.
@@ -22,17 +22,14 @@ use crate::machinery::system::{Inner, holding, pc_system};
 /// safe; in return it takes no locks.
 pub struct pc_kernel {
     dim: usize,
-    direct: Option<Direct>,
-    /// Scratch space for `direct`.
-    room: Vec<f64>,
+    own: Option<Own>,
     motion: MotionField,
 }
 
 impl pc_kernel {
     fn new(mut motion: MotionField, dim: usize) -> pc_kernel {
-        let direct = Direct::of(&mut motion);
-        let room = vec![0.0; direct.as_ref().map_or(0, Direct::room)];
-        pc_kernel { dim, direct, room, motion }
+        let own = Own::of(&mut motion);
+        pc_kernel { dim, own, motion }
     }
 }
 
@@ -87,8 +84,8 @@ pub unsafe extern "C" fn pc_kernel_set_parameters(
             return Err(CallError::NotFinite { what: "a parameter", value });
         }
         parameters.copy_from_slice(values);
-        if let Some(direct) = &kernel.direct {
-            direct.publish(&mut kernel.motion);
+        if let Some(own) = &mut kernel.own {
+            own.read_parameters(&mut kernel.motion);
         }
         Ok(())
     };
@@ -107,14 +104,25 @@ pub unsafe extern "C" fn pc_kernel_rhs(t: f64, y: *const f64, ydot: *mut f64, ke
     // SAFETY: a kernel, whose motion lives, and disjoint arrays of its dimension, as the
     // documentation demands.
     unsafe {
-        if let Some(pc_kernel { dim, direct: Some(direct), room, .. }) = kernel.cast::<pc_kernel>().as_mut()
+        if let Some(pc_kernel { dim, own: Some(own), .. }) = kernel.cast::<pc_kernel>().as_mut()
             && are_usable((y, *dim), (ydot, *dim))
-            && direct.rates_alone(t, y, ydot, room.as_mut_ptr())
+            && own.rates(t, y, ydot)
         {
             return 0;
         }
-        evaluate(y, ydot, kernel, |dim| dim, |motion, y, ydot| motion.rhs(t, y, ydot))
+        rates_of_motion(t, y, ydot, kernel)
     }
+}
+
+/// The same by the motion itself, where there is no machine code, and to tell failures apart.
+///
+/// # Safety
+/// As for [`pc_kernel_rhs`].
+#[cold]
+#[inline(never)] // so that the fast way needs no registers to be saved
+unsafe fn rates_of_motion(t: f64, y: *const f64, ydot: *mut f64, kernel: *mut c_void) -> c_int {
+    // SAFETY: as promised.
+    unsafe { evaluate(y, ydot, kernel, |dim| dim, |motion, y, ydot| motion.rhs(t, y, ydot)) }
 }
 
 /// Writes ∂f/∂y, dim × dim and column-major; otherwise it is like pc_kernel_rhs. The first call

@@ -33,13 +33,12 @@ impl Direct {
     /// than machine code. It lives as long as the field.
     pub(crate) fn of(field: &mut MotionField) -> Option<Direct> {
         let code = field.machine_code()?;
-        let beside = if code.outputs_len() == code.rates_len() { 0 } else { code.outputs_len() };
         let numbers = |len: usize| (0..len).map(|_| AtomicU64::new(0)).collect();
         let direct = Direct {
             version: AtomicU64::new(0),
             fixed_pivots: numbers(code.fixed_len()),
             parameters: numbers(code.parameters_len()),
-            room: beside + code.scratch_len(),
+            room: code.scratch_len(),
             code,
         };
         direct.publish(field);
@@ -72,11 +71,6 @@ impl Direct {
         self.code.rates_len()
     }
 
-    /// Length of the scratch space, including the outputs where there are more of them than rates.
-    pub(crate) fn room(&self) -> usize {
-        self.room
-    }
-
     /// Writes ẏ. Returns false if f fails or the parameters change during the call; ẏ is then
     /// undefined.
     ///
@@ -95,39 +89,26 @@ impl Direct {
             on_heap.as_mut_ptr()
         };
         // SAFETY: as promised, and the room is large enough.
-        let right = unsafe { self.rates_alone(t, y, ydot, room) };
+        let right = unsafe { self.rates_by(t, y, ydot, room) };
         // All reads above come before the second read of the version.
         fence(Ordering::Acquire);
         right && version.is_multiple_of(2) && self.version.load(Ordering::Relaxed) == version
     }
 
-    /// The same as [`rates`](Direct::rates), provided that nothing is published during the call.
+    /// Writes ẏ, reading the published numbers whether they are complete or not.
     ///
     /// # Safety
-    /// As for [`rates`](Direct::rates), with memory for [`room`](Direct::room) numbers at `room`.
+    /// As for [`rates`](Direct::rates), with memory for the scratch of the code at `room`.
     #[inline]
-    pub(crate) unsafe fn rates_alone(&self, t: f64, y: *const f64, ydot: *mut f64, room: *mut f64) -> bool {
-        let (dim, outputs) = (self.dim(), self.code.outputs_len());
+    unsafe fn rates_by(&self, t: f64, y: *const f64, ydot: *mut f64, room: *mut f64) -> bool {
         let fixed = |place: usize| f64::from_bits(self.fixed_pivots[place].load(Ordering::Relaxed));
         let parameters = self.parameters.as_ptr().cast::<f64>();
         // SAFETY: the atomics are 64 bits each, as f64 is. The code, which lives as long as the field, reads as many
-        // numbers of state and parameters as there are, loading each at once, and writes all outputs and the scratch.
+        // numbers of state and parameters as there are, loading each at once, writes all rates, and begins its scratch
+        // with what is watched.
         unsafe {
-            let run = |outputs, scratch| (self.code.entry())(t, y, parameters, outputs, scratch);
-            if outputs == dim {
-                run(ydot, room);
-                let rates = slice::from_raw_parts(ydot, dim);
-                return rates.iter().all(|rate| rate.is_finite()) && self.code.is_regular(&[], fixed);
-            }
-            run(room, room.add(outputs));
-            let (rates, watched) = slice::from_raw_parts(room, outputs).split_at(dim);
-            // The early exit keeps the loop scalar: wider loads would wait for the scalar stores
-            // just made.
-            let copied = rates.iter().enumerate().all(|(i, &rate)| {
-                ydot.add(i).write(rate);
-                rate.is_finite()
-            });
-            copied && self.code.is_regular(watched, fixed)
+            (self.code.entry())(t, y, parameters, ydot, room)
+                && self.code.is_regular(slice::from_raw_parts(room, self.code.watched_len()), fixed)
         }
     }
 }

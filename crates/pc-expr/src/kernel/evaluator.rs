@@ -25,9 +25,18 @@ const LONGEST_MACHINE_CODE: usize = 250_000;
 /// The fastest kernel for `program` on this host: machine code, or the interpreter if none can be
 /// made or the program has more than 250 000 operations.
 pub fn compile(program: Arc<Program>) -> Box<dyn Kernel> {
+    let leading = program.outputs_len();
+    compile_with(program, leading)
+}
+
+/// The same, for [`Kernel::eval_leading`] with that many leading outputs.
+fn compile_with(program: Arc<Program>, leading: usize) -> Box<dyn Kernel> {
     #[cfg(feature = "jit")]
     if program.code().len() <= LONGEST_MACHINE_CODE
-        && let Ok(jit) = crate::kernel::jit::Jit::new(&program)
+        && let Ok(jit) = {
+            use crate::kernel::jit::{Jit, JitOptions};
+            Jit::with_options(&program, &JitOptions { leading, ..JitOptions::default() })
+        }
     {
         return Box::new(jit);
     }
@@ -38,6 +47,7 @@ pub fn compile(program: Arc<Program>) -> Box<dyn Kernel> {
 pub struct Evaluator {
     program: Arc<Program>,
     backend: Backend,
+    leading: usize,
     kernel: Option<Box<dyn Kernel>>,
 }
 
@@ -51,14 +61,20 @@ impl Clone for Evaluator {
     /// An independent evaluator of the same code, for another thread.
     fn clone(&self) -> Evaluator {
         let kernel = self.kernel.as_ref().map(|kernel| kernel.fork());
-        Evaluator { program: Arc::clone(&self.program), backend: self.backend, kernel }
+        Evaluator { program: Arc::clone(&self.program), backend: self.backend, leading: self.leading, kernel }
     }
 }
 
 impl Evaluator {
     /// An evaluator of `program`.
     pub fn new(program: Program, backend: Backend) -> Evaluator {
-        Evaluator { program: Arc::new(program), backend, kernel: None }
+        let leading = program.outputs_len();
+        Evaluator::with_leading(program, backend, leading)
+    }
+
+    /// An evaluator of `program` with that many leading outputs.
+    pub fn with_leading(program: Program, backend: Backend, leading: usize) -> Evaluator {
+        Evaluator { program: Arc::new(program), backend, leading, kernel: None }
     }
 
     /// The program.
@@ -72,14 +88,32 @@ impl Evaluator {
         self.kernel().eval(t, state, parameters, outputs);
     }
 
+    /// Computes the outputs; writes the leading ones, and returns the others and whether all are
+    /// finite, as [`Kernel::eval_leading`] does.
+    #[inline]
+    pub fn eval_leading(
+        &mut self,
+        t: f64,
+        state: &[f64],
+        parameters: &[f64],
+        leading: &mut [f64],
+    ) -> (&[f64], bool) {
+        self.kernel().eval_leading(t, state, parameters, leading)
+    }
+
     #[inline]
     fn kernel(&mut self) -> &mut dyn Kernel {
-        let (program, backend) = (&self.program, self.backend);
+        let (program, backend, leading) = (&self.program, self.backend, self.leading);
         let kernel = self.kernel.get_or_insert_with(|| match backend {
-            Backend::Fastest => compile(Arc::clone(program)),
+            Backend::Fastest => compile_with(Arc::clone(program), leading),
             Backend::Interpreter => Box::new(Interpreter::new(Arc::clone(program))),
         });
         &mut **kernel
+    }
+
+    /// Makes the kernel, which clones made afterwards share.
+    pub fn prepare(&mut self) {
+        self.kernel();
     }
 
     /// The machine code, if there is any: [`Kernel::machine_code`].

@@ -7,7 +7,8 @@ use crate::graph::function::Function;
 use crate::kernel::tape::Tape;
 use crate::program::program::{Instruction, Program, Register};
 
-/// The signature of compiled code: t, the state, the parameters, the outputs, scratch memory.
+/// The signature of compiled code: t, the state, the parameters, the outputs, scratch memory. It
+/// returns whether all outputs are finite.
 ///
 /// The pointers point to arrays of the lengths that the [`Program`] gives, and to scratch of its
 /// required length; a pointer to an empty array is not read. Outputs and scratch must not overlap
@@ -20,7 +21,7 @@ pub type Entry = unsafe extern "C" fn(
     parameters: *const f64,
     outputs: *mut f64,
     scratch: *mut f64,
-);
+) -> bool;
 
 /// Computes the outputs of a [`Program`]; all kernels of a program give the same values.
 pub trait Kernel: Send {
@@ -28,6 +29,16 @@ pub trait Kernel: Send {
     ///
     /// The slices have the lengths `state_len`, `parameters_len` and `outputs_len` of the program.
     fn eval(&mut self, t: f64, state: &[f64], parameters: &[f64], outputs: &mut [f64]);
+
+    /// The same, but writes only the leading outputs, as many as the kernel was compiled with, to
+    /// `leading`. Returns the others, and whether all outputs are finite.
+    fn eval_leading(
+        &mut self,
+        t: f64,
+        state: &[f64],
+        parameters: &[f64],
+        leading: &mut [f64],
+    ) -> (&[f64], bool);
 
     /// An independent kernel of the same program, for another thread.
     fn fork(&self) -> Box<dyn Kernel>;
@@ -46,15 +57,19 @@ pub struct Interpreter {
     /// `None` for a program that is too long for a tape or has fused operations.
     pub(super) tape: Option<Arc<Tape>>,
     registers: Vec<f64>,
+    /// All outputs, where they are not written to one slice.
+    outputs: Vec<f64>,
 }
 
 impl Interpreter {
     /// A kernel for `program`.
     pub fn new(program: Arc<Program>) -> Interpreter {
-        match Tape::new(&program) {
-            Some(tape) => Interpreter { program, registers: tape.registers(), tape: Some(Arc::new(tape)) },
-            None => Interpreter { registers: vec![0.0; program.registers_len()], program, tape: None },
-        }
+        let tape = Tape::new(&program).map(Arc::new);
+        let registers = match &tape {
+            Some(tape) => tape.registers(),
+            None => vec![0.0; program.registers_len()],
+        };
+        Interpreter { program, tape, registers, outputs: Vec::new() }
     }
 
     /// The program.
@@ -96,6 +111,22 @@ impl Kernel for Interpreter {
         for (output, register) in outputs.iter_mut().zip(self.program.outputs()) {
             *output = self.registers[register.index()];
         }
+    }
+
+    fn eval_leading(
+        &mut self,
+        t: f64,
+        state: &[f64],
+        parameters: &[f64],
+        leading: &mut [f64],
+    ) -> (&[f64], bool) {
+        let mut outputs = std::mem::take(&mut self.outputs);
+        outputs.resize(self.program.outputs_len(), f64::NAN);
+        self.eval(t, state, parameters, &mut outputs);
+        self.outputs = outputs;
+        let (first, others) = self.outputs.split_at(leading.len());
+        leading.copy_from_slice(first);
+        (others, self.outputs.iter().all(|output| output.is_finite()))
     }
 
     fn fork(&self) -> Box<dyn Kernel> {

@@ -12,7 +12,8 @@ use proptest::prelude::*;
 use crate::random::SplitMix64;
 
 /// Options for which compiled code gives the bits of the interpreter.
-const EXACT: JitOptions = JitOptions { fma: false, inline_trig: false, registers: 14, chunk: 1000 };
+const EXACT: JitOptions =
+    JitOptions { fma: false, inline_trig: false, registers: 14, chunk: 1000, leading: usize::MAX };
 const STATE: usize = 4;
 const PARAMETERS: usize = 3;
 
@@ -449,5 +450,51 @@ proptest! {
         let expected = evaluate(&mut reference, &inputs, program.outputs_len());
         let found = evaluate(&mut other, &inputs, program.outputs_len());
         prop_assert!(expected.iter().zip(&found).all(|(e, f)| same(*e, *f)), "{expected:?} {found:?}");
+    }
+}
+
+/// Outputs after the leading ones are at the start of the scratch memory, in one function or many, and the code says
+/// whether all outputs are finite.
+#[test]
+fn leading_outputs_and_others_are_finite_or_not() {
+    let graph = Graph::new();
+    let [x, y] = graph.symbols(["x", "y"]);
+    let inputs = Inputs { time: None, state: vec![x, y], parameters: vec![] };
+    let outputs = [x, 1.0 / x, x * y, (x - y).sin(), 3.0.into(), y / x, x.exp(), y, x / y];
+    let program = Program::new(&graph, &inputs, &outputs).unwrap();
+    let mut interpreter = Interpreter::new(Arc::new(program.clone()));
+    let states = [
+        [0.5, -2.0],
+        [0.0, 1.0],
+        [1.0, 0.0],
+        [f64::INFINITY, 1.0],
+        [1.0, f64::NAN],
+        [-750.0, 1e-300],
+        [710.0, 1.0],
+        [1e-300, 1e200],
+    ];
+    for chunk in [1, 3, 1000] {
+        for leading in 0..=outputs.len() {
+            let options = JitOptions { chunk, leading, ..EXACT };
+            let mut jit = Jit::with_options(&program, &options).unwrap();
+            for state in states {
+                let mut expected = [0.0; 9];
+                interpreter.eval(0.0, &state, &[], &mut expected);
+                let all_finite = expected.iter().all(|output| output.is_finite());
+                let mut first = vec![0.0; leading];
+                let (others, finite) = jit.eval_leading(0.0, &state, &[], &mut first);
+                let found = [&first, others].concat();
+                let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+                let is_same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan();
+                assert!(found.iter().zip(&expected).all(is_same), "{state:?}, {leading} leading");
+                assert_eq!(finite, all_finite, "{state:?}, {leading} leading");
+                let mut whole = [0.0; 9];
+                jit.eval(0.0, &state, &[], &mut whole);
+                assert_eq!(bits(&whole), bits(&found), "{state:?}, {leading} leading");
+                let (others, finite) = interpreter.eval_leading(0.0, &state, &[], &mut first);
+                assert_eq!(bits(&[&first, others].concat()), bits(&expected));
+                assert_eq!(finite, all_finite);
+            }
+        }
     }
 }

@@ -10,6 +10,7 @@ use super::assembly::{Assembly, Code};
 use super::error::JitError;
 use super::host::Host;
 use super::memory::{Area, Memory};
+use super::options::JitOptions;
 use super::plan::{Plan, Stay, Step};
 use super::prologue::{close, open};
 use super::{shim, sincos};
@@ -17,10 +18,16 @@ use crate::graph::function::Function;
 use crate::program::program::{Instruction, Program, Register};
 
 /// Compiles a program; also returns the length of its scratch memory.
-pub(super) fn compile(host: &Host, program: &Program, plan: &Plan) -> Result<(Code, usize), JitError> {
+pub(super) fn compile(
+    host: &Host,
+    program: &Program,
+    plan: &Plan,
+    options: &JitOptions,
+) -> Result<(Code, usize), JitError> {
     let constants: Box<[f64]> = program.constants().into();
     let mut assembly = Assembly::new(host.isa());
-    let mut values = Values::new(program, plan);
+    let leading = options.leading.min(program.outputs_len());
+    let mut values = Values::new(program, plan, program.outputs_len() - leading);
     let mut context = Context::new();
     let mut frontend = FunctionBuilderContext::new();
     let mut parts = Vec::new();
@@ -30,7 +37,7 @@ pub(super) fn compile(host: &Host, program: &Program, plan: &Plan) -> Result<(Co
         context.func.signature = host.entry_signature();
         let mut b = FunctionBuilder::new(&mut context.func, &mut frontend);
         let memory = Memory::open(&mut b, &constants);
-        let mut emitter = Emitter { host, program, plan, values: &mut values, memory, b };
+        let mut emitter = Emitter { host, program, plan, leading, values: &mut values, memory, b };
         if start == 0 {
             emitter.keep_time();
         }
@@ -39,8 +46,12 @@ pub(super) fn compile(host: &Host, program: &Program, plan: &Plan) -> Result<(Co
         }
         if end == plan.steps.len() {
             emitter.copy_outputs();
+            let finite = emitter.all_finite();
+            emitter.finish(finite);
+        } else {
+            let unknown = emitter.b.ins().iconst(types::I8, 0);
+            emitter.finish(unknown);
         }
-        emitter.finish();
         parts.push(assembly.define(&mut context)?);
         context.clear();
         start = end;
@@ -67,11 +78,13 @@ fn call_all(
     context.func.signature = host.entry_signature();
     let mut b = FunctionBuilder::new(&mut context.func, frontend);
     let arguments = open(&mut b);
+    let mut finite = Vec::new();
     for &part in parts {
         let name = assembly.name_in(part, b.func);
-        b.ins().call(name, &arguments);
+        let call = b.ins().call(name, &arguments);
+        finite = b.inst_results(call).to_vec();
     }
-    close(b, host);
+    close(b, host, &finite);
     assembly.define(context)
 }
 
@@ -102,8 +115,12 @@ struct Values {
 
 const NONE: u32 = u32::MAX;
 
+/// Number of independent sums by which outputs are found to be finite.
+const SUMS: usize = 4;
+
 impl Values {
-    fn new(program: &Program, plan: &Plan) -> Values {
+    /// `others` numbers of scratch memory are kept for outputs.
+    fn new(program: &Program, plan: &Plan, others: usize) -> Values {
         let mut first_output = vec![NONE; program.registers_len()];
         let mut next_output = vec![NONE; program.outputs_len()];
         let mut home = vec![Home::None; program.registers_len()];
@@ -121,7 +138,7 @@ impl Values {
             read: 0,
             home,
             free: Vec::new(),
-            slots: 0,
+            slots: others as u32,
             first_output,
             next_output,
         }
@@ -140,14 +157,15 @@ struct Emitter<'a> {
     host: &'a Host,
     program: &'a Program,
     plan: &'a Plan,
+    leading: usize,
     values: &'a mut Values,
     memory: Memory,
     b: FunctionBuilder<'a>,
 }
 
 impl Emitter<'_> {
-    fn finish(mut self) {
-        self.b.ins().return_(&[]);
+    fn finish(mut self, result: Value) {
+        self.b.ins().return_(&[result]);
         self.memory.close(&mut self.b);
         self.b.seal_all_blocks();
         self.b.finalize(self.host.frontend_config());
@@ -173,9 +191,37 @@ impl Emitter<'_> {
                 } else {
                     self.load_value(output.index())
                 };
-                self.store(value, Area::Outputs, i as u32);
+                self.store_output(value, i as u32);
             }
         }
+    }
+
+    /// Whether all outputs are finite: 0·s + o is o if s is finite, and NaN if it is not.
+    fn all_finite(&mut self) -> Value {
+        let zero = self.number(0.0);
+        // Several sums, since each waits for its last term.
+        let mut sums: Vec<Value> = Vec::new();
+        for i in 0..self.program.outputs_len() {
+            let output = self.load_output(i as u32);
+            if sums.len() < SUMS {
+                sums.push(output);
+            } else {
+                sums[i % SUMS] = self.zero_times_plus(zero, sums[i % SUMS], output);
+            }
+        }
+        let Some(total) = sums.into_iter().reduce(|a, b| self.zero_times_plus(zero, a, b)) else {
+            return self.b.ins().iconst(types::I8, 1);
+        };
+        let difference = self.b.ins().fsub(total, total);
+        self.b.ins().fcmp(FloatCC::Ordered, difference, difference)
+    }
+
+    fn zero_times_plus(&mut self, zero: Value, a: Value, b: Value) -> Value {
+        if self.host.has_fma() {
+            return self.b.ins().fma(a, zero, b);
+        }
+        let product = self.b.ins().fmul(a, zero);
+        self.b.ins().fadd(product, b)
     }
 
     fn step(&mut self, now: u32) {
@@ -227,7 +273,7 @@ impl Emitter<'_> {
         }
         match (self.values.home[r], r.checked_sub(program.first_input() + 1)) {
             (Home::Slot(slot), _) => self.load(Area::Scratch, slot),
-            (Home::Output(output), _) => self.load(Area::Outputs, output),
+            (Home::Output(output), _) => self.load_output(output),
             (Home::None, Some(i)) if i < program.state_len() => self.load(Area::State, i as u32),
             (Home::None, Some(i)) => self.load(Area::Parameters, (i - program.state_len()) as u32),
             (Home::None, None) => self.memory.t,
@@ -245,7 +291,7 @@ impl Emitter<'_> {
             self.store(value, Area::Scratch, slot);
         }
         while output != NONE {
-            self.store(value, Area::Outputs, output);
+            self.store_output(value, output);
             output = self.values.next_output[output as usize];
         }
     }
@@ -261,6 +307,24 @@ impl Emitter<'_> {
                 values.free.push(slot);
             }
         });
+    }
+
+    /// Where an output is: after the leading ones, at the start of the scratch memory.
+    fn place_of_output(&self, output: u32) -> (Area, u32) {
+        match output.checked_sub(self.leading as u32) {
+            None => (Area::Outputs, output),
+            Some(place) => (Area::Scratch, place),
+        }
+    }
+
+    fn load_output(&mut self, output: u32) -> Value {
+        let (area, index) = self.place_of_output(output);
+        self.load(area, index)
+    }
+
+    fn store_output(&mut self, value: Value, output: u32) {
+        let (area, index) = self.place_of_output(output);
+        self.store(value, area, index);
     }
 
     fn load(&mut self, area: Area, index: u32) -> Value {

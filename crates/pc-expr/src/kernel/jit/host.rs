@@ -68,6 +68,7 @@ impl Host {
         let mut signature = Signature::new(self.convention());
         signature.params.push(AbiParam::new(types::F64));
         signature.params.extend([AbiParam::new(types::I64); 4]);
+        signature.returns.push(AbiParam::new(types::I8));
         signature
     }
 }

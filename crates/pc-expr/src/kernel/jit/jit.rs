@@ -39,6 +39,8 @@ const MOST_REGISTERS: usize = i32::MAX as usize / 16;
 pub struct Jit {
     code: Arc<Code>,
     lengths: [usize; 3],
+    /// How many of the outputs the code writes to the memory for outputs.
+    leading: usize,
     scratch: Vec<f64>,
 }
 
@@ -64,8 +66,9 @@ impl Jit {
         let program = if fused { Cow::Owned(program.fused()) } else { Cow::Borrowed(program) };
         let options = JitOptions { inline_trig: options.inline_trig && host.has_fma(), ..*options };
         let plan = Plan::new(&program, &options);
-        let (code, scratch) = emit::compile(host, &program, &plan)?;
+        let (code, scratch) = emit::compile(host, &program, &plan, &options)?;
         Ok(Jit {
+            leading: options.leading.min(program.outputs_len()),
             code: Arc::new(code),
             lengths: [program.state_len(), program.parameters_len(), program.outputs_len()],
             scratch: vec![0.0; scratch],
@@ -78,7 +81,8 @@ impl Jit {
         self.code.entry()
     }
 
-    /// The length of the scratch memory of [`entry`](Jit::entry); its contents do not matter.
+    /// The length of the scratch memory of [`entry`](Jit::entry). Its contents do not matter; the
+    /// code leaves the outputs after the [leading](JitOptions::leading) ones at its start.
     pub fn scratch_len(&self) -> usize {
         self.scratch.len()
     }
@@ -139,13 +143,36 @@ impl Kernel for Jit {
         assert_eq!(state.len(), of_state, "length of the state");
         assert_eq!(parameters.len(), of_parameters, "number of parameters");
         assert_eq!(outputs.len(), of_outputs, "number of outputs");
+        let (leading, others) = outputs.split_at_mut(self.leading);
         let entry = self.code.entry();
         // SAFETY: `self.code` holds the code; it reads and writes within the lengths just checked
         // and within `scratch_len` numbers of scratch, and exclusive borrows keep outputs and
         // scratch apart from the rest.
         unsafe {
-            entry(t, state.as_ptr(), parameters.as_ptr(), outputs.as_mut_ptr(), self.scratch.as_mut_ptr());
+            entry(t, state.as_ptr(), parameters.as_ptr(), leading.as_mut_ptr(), self.scratch.as_mut_ptr());
         }
+        others.copy_from_slice(&self.scratch[..others.len()]);
+    }
+
+    /// # Panics
+    /// As for [`eval`](Kernel::eval).
+    fn eval_leading(
+        &mut self,
+        t: f64,
+        state: &[f64],
+        parameters: &[f64],
+        leading: &mut [f64],
+    ) -> (&[f64], bool) {
+        let [of_state, of_parameters, of_outputs] = self.lengths;
+        assert_eq!(state.len(), of_state, "length of the state");
+        assert_eq!(parameters.len(), of_parameters, "number of parameters");
+        assert_eq!(leading.len(), self.leading, "number of leading outputs");
+        let entry = self.code.entry();
+        // SAFETY: as for `eval`.
+        let finite = unsafe {
+            entry(t, state.as_ptr(), parameters.as_ptr(), leading.as_mut_ptr(), self.scratch.as_mut_ptr())
+        };
+        (&self.scratch[..of_outputs - self.leading], finite)
     }
 
     fn fork(&self) -> Box<dyn Kernel> {

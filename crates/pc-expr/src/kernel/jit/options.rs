@@ -15,12 +15,15 @@ pub struct JitOptions {
     pub registers: u32,
     /// Number of instructions in a function, for programs of more than 50 000 instructions.
     pub chunk: usize,
+    /// Number of outputs that go to the memory for outputs; the code writes any others to the start
+    /// of its scratch memory.
+    pub leading: usize,
 }
 
 impl Default for JitOptions {
     fn default() -> JitOptions {
         // Some of the 16 or 32 registers are needed for temporary values.
         let registers = if cfg!(target_arch = "x86_64") { 14 } else { 28 };
-        JitOptions { fma: true, inline_trig: true, registers, chunk: 1000 }
+        JitOptions { fma: true, inline_trig: true, registers, chunk: 1000, leading: usize::MAX }
     }
 }

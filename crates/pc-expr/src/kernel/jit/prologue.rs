@@ -14,8 +14,8 @@ pub(super) fn open(b: &mut FunctionBuilder<'_>) -> Vec<Value> {
 }
 
 /// Returns from a function and ends it.
-pub(super) fn close(mut b: FunctionBuilder<'_>, host: &Host) {
-    b.ins().return_(&[]);
+pub(super) fn close(mut b: FunctionBuilder<'_>, host: &Host, results: &[Value]) {
+    b.ins().return_(results);
     b.seal_all_blocks();
     b.finalize(host.frontend_config());
 }

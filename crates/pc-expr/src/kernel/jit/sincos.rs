@@ -95,7 +95,7 @@ pub(super) fn compile_far(host: &Host) -> Result<Code, JitError> {
     let signature = b.import_signature(signature);
     let address = b.ins().iconst(types::I64, shim::circle_address() as i64);
     b.ins().call_indirect(signature, address, &arguments);
-    close(b, host);
+    close(b, host, &[]);
     let mut assembly = Assembly::new(host.isa());
     let id = assembly.define(&mut context)?;
     assembly.finish(id, Box::default())

@@ -18,15 +18,20 @@ pub(crate) struct Prologue {
 }
 
 impl Prologue {
-    /// Divides a program whose parameters with these indices may change at each evaluation; `None` if the
-    /// division saves next to nothing.
-    pub(crate) fn of(program: &Program, varying: &[usize], backend: Backend) -> Option<Prologue> {
+    /// Divides a program whose parameters with these indices may change at each evaluation, and that has so many
+    /// leading outputs; `None` if the division saves next to nothing.
+    pub(crate) fn of(
+        program: &Program,
+        varying: &[usize],
+        backend: Backend,
+        leading: usize,
+    ) -> Option<Prologue> {
         let fixed: Vec<bool> = (0..program.parameters_len()).map(|i| !varying.contains(&i)).collect();
         let (of_parameters, rest) = program.hoisted(&fixed)?;
         Some(Prologue {
             numbers: vec![f64::NAN; rest.parameters_len()],
             of_parameters: Evaluator::new(of_parameters, Backend::Interpreter),
-            rest: Evaluator::new(rest, backend),
+            rest: Evaluator::with_leading(rest, backend, leading),
             varying: varying.to_vec(),
             is_known: false,
         })
@@ -64,14 +69,20 @@ impl Prologue {
     }
 
     #[inline]
-    pub(crate) fn eval(&mut self, t: f64, y: &[f64], p: &[f64], outputs: &mut [f64]) {
+    pub(crate) fn eval_leading(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        p: &[f64],
+        leading: &mut [f64],
+    ) -> (&[f64], bool) {
         if !self.is_known {
             self.compute(p);
         }
         for &place in &self.varying {
             self.numbers[place] = p[place];
         }
-        self.rest.eval(t, y, &self.numbers, outputs);
+        self.rest.eval_leading(t, y, &self.numbers, leading)
     }
 
     /// The second part, which takes [`numbers`](Prologue::numbers) as its parameters.

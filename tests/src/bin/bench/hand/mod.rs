@@ -65,7 +65,7 @@ impl Routine {
     /// # Panics
     /// If one changes, or there are not as many parameters as it takes.
     pub(crate) fn of_motion(code: &MachineCode, parameters: &[f64]) -> Routine {
-        assert_eq!(code.outputs_len(), code.rates_len(), "outputs are rates");
+        assert_eq!(code.watched_len(), 0, "pivots that change");
         assert_eq!(code.parameters_len(), parameters.len(), "parameters of the code");
         let scratch = vec![0.0; code.scratch_len()];
         Routine {
@@ -126,10 +126,11 @@ macro_rules! for_this_host {
 macro_rules! enter {
     ($(#[$feature:meta])? $name:ident, $state:ty, $function:expr) => {
         $(#[$feature])?
-        unsafe extern "C" fn $name(_: f64, y: *const f64, _: *const f64, dy: *mut f64, _: *mut f64) {
+        unsafe extern "C" fn $name(_: f64, y: *const f64, _: *const f64, dy: *mut f64, _: *mut f64) -> bool {
             // SAFETY: who calls passes as many numbers as the `Hand` says, and those of `dy` overlap nothing.
             let (y, dy) = unsafe { (&*y.cast::<$state>(), &mut *dy.cast::<$state>()) };
             $function(y, dy);
+            true
         }
     };
 }

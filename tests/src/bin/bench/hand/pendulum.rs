@@ -117,6 +117,7 @@ macro_rules! by_size {
     ($function:ident, $links:expr) => {
         match $links {
             4 => for_this_host!($function, [[f64; 4]; 2], 4),
+            2 => for_this_host!($function, [[f64; 2]; 2], 2),
             8 => for_this_host!($function, [[f64; 8]; 2], 8),
             16 => for_this_host!($function, [[f64; 16]; 2], 16),
             32 => for_this_host!($function, [[f64; 32]; 2], 32),
@@ -128,7 +129,7 @@ macro_rules! by_size {
 /// The mass matrix formed and factorised.
 ///
 /// # Panics
-/// For any number of links but 4, 8, 16 and 32.
+/// For any number of links but 2, 4, 8, 16 and 32.
 pub(crate) fn pendulum(links: usize) -> Hand {
     by_size!(by_mass_matrix, links)
 }
