@@ -67,6 +67,7 @@ pub unsafe extern "C" fn pc_solver_new(
             // SAFETY: `y_length` numbers, as the preamble demands.
             (t, unsafe { numbers(y, y_length, dim, "y") }?)
         };
+        inner.field.prepare(options.method());
         let events = Followed::new(inner.events.clone());
         let integration =
             Integration::new(inner.field.clone(), &Checkpoint::start(t, y), options, events.clone())?;

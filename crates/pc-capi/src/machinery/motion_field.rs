@@ -1,5 +1,6 @@
 //! The vector field that is integrated.
 
+use pc_expr::Method;
 use pc_mech::{Failure, ForcedMotion, MachineCode, MechError, Motion, VectorField};
 
 use crate::machinery::controller::Controller;
@@ -39,6 +40,13 @@ impl MotionField {
         match self {
             MotionField::Free(motion) => motion,
             MotionField::Forced(forced) => forced.motion(),
+        }
+    }
+
+    /// Compiles what a method evaluates, so that clones made afterwards share it.
+    pub(crate) fn prepare(&mut self, method: Method) {
+        if let MotionField::Free(motion) = self {
+            motion.prepare(method);
         }
     }
 
@@ -140,6 +148,7 @@ macro_rules! delegate {
 }
 
 impl VectorField for MotionField {
+    #[inline]
     fn dim(&self) -> usize {
         delegate!(self, field => field.dim())
     }
@@ -149,6 +158,7 @@ impl VectorField for MotionField {
         delegate!(self, field => field.rhs(t, y, ydot))
     }
 
+    #[inline]
     fn checks_rates(&self) -> bool {
         delegate!(self, field => field.checks_rates())
     }

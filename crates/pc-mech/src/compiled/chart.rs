@@ -114,11 +114,11 @@ impl Chart {
             state: frame.coordinates().to_vec(),
             parameters: system.parameters().iter().map(|&(symbol, _)| symbol).collect(),
         };
-        let evaluator = |outputs: &[Expr<'g>]| -> Result<Evaluator, MechError> {
-            Ok(Evaluator::new(Program::new(system.graph(), &inputs, outputs)?, Backend::Interpreter))
+        let evaluator = |outputs: &[Expr<'g>], backend| -> Result<Evaluator, MechError> {
+            Ok(Evaluator::new(Program::new(system.graph(), &inputs, outputs)?, backend))
         };
-        let entries = evaluator(&a.entries())?;
-        let short = short.map(|determinant| evaluator(&[determinant])).transpose()?;
+        let entries = evaluator(&a.entries(), Backend::Interpreter)?;
+        let short = short.map(|determinant| evaluator(&[determinant], Backend::Fastest)).transpose()?;
         let (coordinates, parameters) = (inputs.state.len(), inputs.parameters.len());
         let size = a.rows();
         let room = vec![0.0; size * size];

@@ -2,7 +2,7 @@
 
 use pc_algebra::Matrix;
 use pc_expr::{
-    Cost, Digest, Evaluator, Expr, Failure, Pattern, Program, RateJump, VariedSeries, VectorField,
+    Cost, Digest, Evaluator, Expr, Failure, Method, Pattern, Program, RateJump, VariedSeries, VectorField,
 };
 
 use crate::compiled::change_point::watch::Watch;
@@ -227,7 +227,7 @@ impl Motion {
         match &mut self.form {
             Form::InMomenta(motion) => motion.inner_mut().signals = signals,
             Form::Unrolled(unrolled) => {
-                unrolled.vary(&signals.places().collect::<Vec<_>>(), self.options.backend);
+                unrolled.vary(&signals.places().collect::<Vec<_>>(), self.options.backend, self.names.len());
                 self.signals = signals;
             }
             Form::Staged(_) => self.signals = signals,
@@ -445,6 +445,19 @@ impl Motion {
             Form::Unrolled(unrolled) => unrolled.cost(self.names.len()),
             Form::Staged(staged) => staged.cost().clone(),
             Form::InMomenta(motion) => motion.inner().cost(),
+        }
+    }
+
+    /// Compiles what a method evaluates besides f, so that clones made afterwards share it; otherwise it is compiled on
+    /// first use, by each clone. Where a method is not defined for this motion, nothing is compiled.
+    pub fn prepare(&mut self, method: Method) {
+        match (method, &mut self.form) {
+            (Method::Taylor, _) => {
+                // The method gives the reason where there is no series.
+                let _ = self.series();
+            }
+            (Method::Bdf, Form::Unrolled(unrolled)) => unrolled.prepare_jacobian(),
+            _ => {}
         }
     }
 

@@ -88,6 +88,7 @@ impl Motion {
 }
 
 impl VectorField for Motion {
+    #[inline]
     fn dim(&self) -> usize {
         self.names.len()
     }
@@ -114,6 +115,7 @@ impl VectorField for Motion {
         outcome.map_err(|failure| self.failure(failure, t, y))
     }
 
+    #[inline]
     fn checks_rates(&self) -> bool {
         true
     }

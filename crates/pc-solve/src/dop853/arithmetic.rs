@@ -1,14 +1,18 @@
 //! Sums of stages over the components of a state.
 //!
-//! Rows are as long as a state, padded with 0 to an even length. For short rows the length is a
-//! compile-time constant, so that the loops are unrolled without bounds checks. The order of
-//! operations, and so each bit of the results, does not depend on whether the length is constant.
+//! Rows are as long as a state, padded with 0 to a multiple of four, the numbers in a vector. For
+//! short rows the length is a compile-time constant, so that the loops are unrolled without bounds
+//! checks. The order of operations, and so each bit of the results, depends neither on whether the
+//! length is constant nor on the vectors of the processor.
 
 use super::coefficients::{B, B3, E5};
 
+/// The length of rows is a multiple of this.
+const WIDTH: usize = 4;
+
 /// The length of a row that holds a state of length `dim`.
 pub(super) fn padded(dim: usize) -> usize {
-    dim.next_multiple_of(2)
+    dim.next_multiple_of(WIDTH)
 }
 
 /// sum = y + h Σ aⱼ kⱼ
@@ -32,8 +36,12 @@ pub(super) fn add_of<const LENGTH: usize, const TERMS: usize>(
     k: [&[f64]; TERMS],
 ) {
     let n = if LENGTH == 0 { sum.len() } else { LENGTH };
-    let (sum, y, k) = (&mut sum[..n], &y[..n], k.map(|k| &k[..n]));
-    let scaled = a.map(|a| h * a);
+    let (sum, y, k) = (&mut sum[..n], &y[..n], rows_of(n, k));
+    // A loop, since `map` over arrays is a call in some builds.
+    let mut scaled = [0.0; TERMS];
+    for j in 0..TERMS {
+        scaled[j] = h * a[j];
+    }
     for i in 0..n {
         let mut value = scaled[0] * k[0][i];
         for j in 1..TERMS {
@@ -41,6 +49,15 @@ pub(super) fn add_of<const LENGTH: usize, const TERMS: usize>(
         }
         sum[i] = y[i] + value;
     }
+}
+
+/// The rows, known to be of length n.
+#[inline(always)]
+fn rows_of<const ROWS: usize>(n: usize, mut rows: [&[f64]; ROWS]) -> [&[f64]; ROWS] {
+    for row in &mut rows {
+        *row = &row[..n];
+    }
+    rows
 }
 
 /// The tolerances that weight the error of a step.
@@ -64,9 +81,9 @@ pub(super) fn finish_of<const LENGTH: usize>(
     Weights { relative, absolute }: Weights<'_>,
 ) -> (f64, f64) {
     let n = if LENGTH == 0 { y1.len() } else { LENGTH };
-    let (y1, y, absolute, k) = (&mut y1[..n], &y[..n], &absolute[..n], k.map(|k| &k[..n]));
-    // Two sums, since rows have even length.
-    let (mut fifth, mut third) = ([0.0; 2], [0.0; 2]);
+    let (y1, y, absolute, k) = (&mut y1[..n], &y[..n], &absolute[..n], rows_of(n, k));
+    // A sum for each place in a vector.
+    let (mut fifth, mut third) = ([0.0; WIDTH], [0.0; WIDTH]);
     for i in 0..n {
         let (mut slope, mut error) = (B[0] * k[0][i], E5[0] * k[0][i]);
         for j in 1..8 {
@@ -78,10 +95,11 @@ pub(super) fn finish_of<const LENGTH: usize>(
         let weight = 1.0 / (absolute[i] + relative * y[i].abs().max(end.abs()));
         let other = slope - B3[0] * k[0][i] - B3[1] * k[4][i] - B3[2] * k[7][i];
         // An infinite component has weight 0, so its error alone would not show.
-        fifth[i % 2] += (error * weight) * (error * weight) + 0.0 * end;
-        third[i % 2] += (other * weight) * (other * weight);
+        fifth[i % WIDTH] += (error * weight) * (error * weight) + 0.0 * end;
+        third[i % WIDTH] += (other * weight) * (other * weight);
     }
-    (fifth[0] + fifth[1], third[0] + third[1])
+    let sum = |sums: [f64; WIDTH]| (sums[0] + sums[1]) + (sums[2] + sums[3]);
+    (sum(fifth), sum(third))
 }
 
 /// Σ (aᵢ − bᵢ)²

@@ -22,6 +22,7 @@ pub(super) type Early = [Vec<f64>; 4];
 
 /// Writes f(t, y), checks that it is finite, and counts the evaluation; rows may be longer than the
 /// state.
+#[inline]
 pub(super) fn evaluate<F: VectorField>(
     (field, count): (&mut F, &mut u64),
     t: f64,
@@ -52,6 +53,10 @@ pub(super) fn evaluate<F: VectorField>(
 ///
 /// # Errors
 /// A failure of the field, with the time at which it occurred.
+#[cfg_attr(
+    target_arch = "x86_64",
+    expect(unsafe_code, reason = "a function compiled for some processors only")
+)]
 pub(super) fn advance<F: VectorField>(
     counted: (&mut F, &mut u64),
     from: &Node,
@@ -60,10 +65,40 @@ pub(super) fn advance<F: VectorField>(
     argument: &mut [f64],
     weights: Weights<'_>,
 ) -> Result<(f64, f64), (f64, Failure)> {
+    #[cfg(target_arch = "x86_64")]
+    if is_x86_feature_detected!("avx2") {
+        // SAFETY: the processor has these vectors.
+        return unsafe { advance_by_vectors(counted, from, to, rows, argument, weights) };
+    }
+    advance_by_length(counted, from, to, rows, argument, weights)
+}
+
+/// The same with vectors of four numbers.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn advance_by_vectors<F: VectorField>(
+    counted: (&mut F, &mut u64),
+    from: &Node,
+    to: &mut Node,
+    rows: (&mut Early, &mut Stages),
+    argument: &mut [f64],
+    weights: Weights<'_>,
+) -> Result<(f64, f64), (f64, Failure)> {
+    advance_by_length(counted, from, to, rows, argument, weights)
+}
+
+/// The same, for the length of the rows.
+#[inline(always)]
+fn advance_by_length<F: VectorField>(
+    counted: (&mut F, &mut u64),
+    from: &Node,
+    to: &mut Node,
+    rows: (&mut Early, &mut Stages),
+    argument: &mut [f64],
+    weights: Weights<'_>,
+) -> Result<(f64, f64), (f64, Failure)> {
     match argument.len() {
-        2 => advance_of::<F, 2>(counted, from, to, rows, argument, weights),
         4 => advance_of::<F, 4>(counted, from, to, rows, argument, weights),
-        6 => advance_of::<F, 6>(counted, from, to, rows, argument, weights),
         8 => advance_of::<F, 8>(counted, from, to, rows, argument, weights),
         12 => advance_of::<F, 12>(counted, from, to, rows, argument, weights),
         _ => advance_of::<F, 0>(counted, from, to, rows, argument, weights),
@@ -71,6 +106,7 @@ pub(super) fn advance<F: VectorField>(
 }
 
 /// The same for rows of length LENGTH, or of any length if LENGTH is 0.
+#[inline(always)]
 fn advance_of<F: VectorField, const LENGTH: usize>(
     (field, count): (&mut F, &mut u64),
     from: &Node,
@@ -82,8 +118,8 @@ fn advance_of<F: VectorField, const LENGTH: usize>(
     let (t, t1) = (from.t, to.t);
     let h = t1 - t;
     let (y, k1) = (&from.y[..], &from.rates[..]);
-    let [k2, k3, k4, k5] = early.each_mut().map(Vec::as_mut_slice);
-    let [k6, k7, k8, k9, k10, k11, k12] = stages.each_mut().map(Vec::as_mut_slice);
+    let [k2, k3, k4, k5] = early;
+    let [k6, k7, k8, k9, k10, k11, k12] = stages;
     add_of::<LENGTH, _>(argument, y, h, &A2, [k1]);
     evaluate((field, count), t + C[1] * h, argument, k2)?;
     add_of::<LENGTH, _>(argument, y, h, &A3, [k1, k2]);

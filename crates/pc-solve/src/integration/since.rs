@@ -48,10 +48,12 @@ impl<F: VectorField> Since<F> {
 }
 
 impl<F: VectorField> VectorField for Since<F> {
+    #[inline]
     fn dim(&self) -> usize {
         self.field.dim()
     }
 
+    #[inline]
     fn rhs(&mut self, s: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
         let t = self.time(s);
         if self.field.checks_rates() {
@@ -68,6 +70,7 @@ impl<F: VectorField> VectorField for Since<F> {
         }
     }
 
+    #[inline]
     fn checks_rates(&self) -> bool {
         true
     }

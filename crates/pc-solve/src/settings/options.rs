@@ -48,6 +48,11 @@ impl Default for Options {
 }
 
 impl Options {
+    /// The method.
+    pub fn method(&self) -> Method {
+        self.method
+    }
+
     /// Options for a method with tolerances 1e-9 (relative) and 1e-12 (absolute), at most 500 000
     /// steps between outputs, Newton's iteration for BDF and fixed-point iteration for Adams.
     pub fn new(method: Method) -> Self {

@@ -77,6 +77,11 @@ impl Columns {
         Ok(Columns { values: vec![0.0; pattern.len()], pattern, entries })
     }
 
+    /// Compiles the entries, which are otherwise compiled on first use.
+    pub(crate) fn prepare(&mut self) {
+        self.entries.prepare();
+    }
+
     pub(crate) fn pattern(&self) -> &Pattern {
         &self.pattern
     }

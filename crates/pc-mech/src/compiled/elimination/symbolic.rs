@@ -12,7 +12,7 @@ use pc_expr::{
 use crate::compiled::elimination::columns::{Columns, Storage, derivative};
 use crate::compiled::elimination::pivots::Pivots;
 use crate::compiled::elimination::prologue::Prologue;
-use crate::compiled::failure::{EvaluationFailure, blame, check_finite};
+use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::first_order::{FirstOrder, Linearised};
 use crate::compiled::machine_code::MachineCode;
 use crate::compiled::options::CompileOptions;
@@ -21,11 +21,10 @@ use crate::compiled::point::Point;
 /// The compiled ẏ = g(t, y, M⁻¹ r) and its derivatives.
 #[derive(Clone, Debug)]
 pub(crate) struct Unrolled {
-    /// Outputs: ẏ, then the pivots and the diagonal entries of M that change with the state.
+    /// Outputs: ẏ, which leads, then the pivots and the diagonal entries of M that change with the state.
     rates: Evaluator,
     /// A faster form of the same program, if much of it depends on parameters alone.
     prologue: Option<Box<Prologue>>,
-    outputs: Vec<f64>,
     pivots: Pivots,
     jacobian: Option<Jacobian>,
     /// Computes (∂ẏ/∂y) v from the state (y, v).
@@ -78,9 +77,8 @@ impl Unrolled {
         let varies = |&place: &usize| system.varying.contains(&system.parameters[place].0);
         let varying: Vec<usize> = (0..system.parameters.len()).filter(varies).collect();
         Ok(Unrolled {
-            outputs: vec![0.0; program.outputs_len()],
-            prologue: Prologue::of(&program, &varying, options.backend).map(Box::new),
-            rates: Evaluator::new(program, options.backend),
+            prologue: Prologue::of(&program, &varying, options.backend, rates.len()).map(Box::new),
+            rates: Evaluator::with_leading(program, options.backend, rates.len()),
             pivots,
             jacobian: match options.jacobian {
                 true if by_products => {
@@ -108,10 +106,10 @@ impl Unrolled {
     }
 
     /// Marks further parameters, given by their indices, as able to change at each evaluation.
-    pub(crate) fn vary(&mut self, places: &[usize], backend: Backend) {
+    pub(crate) fn vary(&mut self, places: &[usize], backend: Backend, dim: usize) {
         if let Some(prologue) = self.prologue.take() {
             let varying = [prologue.varying(), places].concat();
-            self.prologue = Prologue::of(self.rates.program(), &varying, backend).map(Box::new);
+            self.prologue = Prologue::of(self.rates.program(), &varying, backend, dim).map(Box::new);
         }
     }
 
@@ -145,6 +143,7 @@ impl Unrolled {
         self.observables.eval(t, y, p, values);
     }
 
+    #[inline]
     pub(crate) fn rhs(
         &mut self,
         t: f64,
@@ -152,28 +151,19 @@ impl Unrolled {
         p: &[f64],
         ydot: &mut [f64],
     ) -> Result<(), EvaluationFailure> {
-        if self.outputs.len() == ydot.len() {
-            match &mut self.prologue {
-                Some(prologue) => prologue.eval(t, y, p, ydot),
-                None => self.rates.eval(t, y, p, ydot),
-            }
-            self.pivots.check(y, p, &[])?;
-            return check_finite(ydot, &self.rates, Point { t, y, p });
-        }
-        match &mut self.prologue {
-            Some(prologue) => prologue.eval(t, y, p, &mut self.outputs),
-            None => self.rates.eval(t, y, p, &mut self.outputs),
-        }
-        let (rates, moving) = self.outputs.split_at(y.len());
+        let (moving, finite) = match &mut self.prologue {
+            Some(prologue) => prologue.eval_leading(t, y, p, ydot),
+            None => self.rates.eval_leading(t, y, p, ydot),
+        };
         self.pivots.check(y, p, moving)?;
-        // One number at a time, with an early exit: a wider copy would wait for the numbers just written.
-        for (ydot, &rate) in ydot.iter_mut().zip(rates) {
-            *ydot = rate;
-            if !rate.is_finite() {
-                return Err(blame(&self.rates, Point { t, y, p }));
-            }
+        if finite { Ok(()) } else { check_finite(ydot, &self.rates, Point { t, y, p }) }
+    }
+
+    /// Compiles the Jacobian, which is otherwise compiled on first use.
+    pub(crate) fn prepare_jacobian(&mut self) {
+        if let Some(Jacobian::Columns(columns)) = &mut self.jacobian {
+            columns.prepare();
         }
-        Ok(())
     }
 
     /// The Taylor series of the motion.
