@@ -63,7 +63,7 @@ pub use document::Document;
 pub use flow::events::FlowEvents;
 pub use flow::flow::Flow;
 pub use flow::free_form::FreeForm;
-pub use flow::prototype::Prototype;
+pub use flow::prototype::{MemberValues, Prototype};
 pub use flow::tolerances::{ORDINARY_TOLERANCE, absolute_tolerances};
 pub use model::builtin::{BUILTIN, Builtin, CLASSICS, TREES};
 pub use model::given::GivenQuasiVelocity;

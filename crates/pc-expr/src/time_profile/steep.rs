@@ -183,6 +183,10 @@ impl Followed {
     /// `None` if there are no such functions, or if they are too long.
     fn of(program: &Program, dim: usize, parameters: &[f64]) -> Option<Followed> {
         let motions = motions(program);
+        // For most programs this is known without the ranges of values.
+        if !(program.first_result()..).zip(program.code()).any(|at| may_be_steep(at, &motions)) {
+            return None;
+        }
         let steep = steep(program, parameters, &motions).map(|(place, kind)| (kind.watch(place), kind));
         let (watched, kinds): (Vec<Watch>, Vec<Kind>) = steep.unzip();
         let mut part = Part::new(program, parameters, watched);
@@ -221,11 +225,22 @@ fn steep<'a>(
         let motion = motions[place];
         let kind = match (motion.state, motion.time) {
             (true, true) if changes_faster(instruction, motions) => Kind::Moving,
-            (true, false) => kind(instruction, &ranges)?,
+            (true, false) if may_be_steep((place, instruction), motions) => kind(instruction, &ranges)?,
             _ => return None,
         };
         Some((place, kind))
     })
+}
+
+/// Whether the function in a register is one of those that [`steep`] examines.
+fn may_be_steep((place, instruction): (usize, &Instruction), motions: &[Motion]) -> bool {
+    let motion = motions[place];
+    let of_state = match *instruction {
+        Instruction::Divide(_, b) => motions[b.index()].state,
+        Instruction::Call(Function::Pow | Function::Exp | Function::Tanh | Function::Atan, _) => true,
+        _ => false,
+    };
+    motion.state && (of_state || motion.time && changes_faster(instruction, motions))
 }
 
 /// Whether a function of t and the state may change much faster than its arguments.

@@ -1,7 +1,8 @@
 //! The start of a motion, found from its given parts.
 
 use pc_algebra::affine;
-use pc_mech::{Expr, Frame, Graph};
+use pc_expr::{Inputs, Program};
+use pc_mech::{Expr, Frame, Graph, MechError};
 
 use super::constraints::Written;
 use crate::assembly::assembler::Assembler;
@@ -45,6 +46,38 @@ pub(crate) fn start(model: &Model, graph: &Graph) -> Result<Vec<f64>, ModelError
     let mut assembler = Assembler { model, graph, scope: Scope::new(graph, model.document()) };
     let given = assembler.given_start(&parameters)?;
     Ok([given.values, given.states].concat())
+}
+
+/// The start values as the text has them, in the same order, as functions of the parameters.
+///
+/// # Errors
+/// [`ModelError`] if an expression is wrong.
+pub(crate) fn written_start(model: &Model, graph: &Graph) -> Result<Program, ModelError> {
+    let document = model.document();
+    let mut scope = Scope::new(graph, document);
+    let mut resolved = |expression: Option<&Expression>| match expression {
+        Some(expression) => scope.resolve(expression, Stage::Start),
+        None => Ok(Expr::ZERO),
+    };
+    let mut values = Vec::new();
+    for coordinate in &document.coordinates {
+        values.push(resolved(Some(&coordinate.expression))?);
+    }
+    for quasi_velocity in &document.quasi_velocities {
+        values.push(resolved(quasi_velocity.start.as_ref())?);
+    }
+    if document.quasi_velocities.is_empty() {
+        for coordinate in &document.coordinates {
+            let velocity = entry(&document.start_velocities, &coordinate.name.text);
+            values.push(resolved(velocity.map(|velocity| &velocity.expression))?);
+        }
+    }
+    for state in &document.states {
+        values.push(resolved(state.start.as_ref())?);
+    }
+    let parameters = model.parameters().map(|(name, _)| graph.symbol(name)).collect();
+    let inputs = Inputs { time: None, state: Vec::new(), parameters };
+    Program::new(graph, &inputs, &values).map_err(|error| document.derivation_error(MechError::from(error)))
 }
 
 impl<'g> Assembler<'g, '_> {

@@ -5,12 +5,13 @@
 //! frame of the header: the model and the options, [[what, value], …] in JSON
 //! frame of a record, for members 0, 1, 2, …
 //! ```
-//! A frame consists of a length, a CRC-32 and the bytes. Records are only ever appended, each with one system
-//! call; an incomplete record at the end is cut off.
+//! A frame consists of a length, a CRC-32 and the bytes. Records are only ever appended, those of short motions many at a
+//! time; an incomplete record at the end is cut off.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use super::error::SweepError;
 use super::record::{Record, Status};
@@ -25,6 +26,14 @@ const MAGIC: &[u8] = b"pc sweep journal\n";
 pub struct Journal {
     path: PathBuf,
     file: File,
+    /// Frames that are not yet in the file, and where each of them ends.
+    waiting: Vec<u8>,
+    ends: Vec<u64>,
+    /// When frames were last written.
+    written: Instant,
+    /// How many members are in the file, and its length.
+    kept: u64,
+    length: u64,
     /// The offset at which the records begin.
     records: u64,
     /// The members to which the records belong.
@@ -44,6 +53,11 @@ pub trait Records {
     /// anyway.
     fn kept(&self) -> Option<&Path>;
 }
+
+/// Records wait for others until they are as many bytes, or come so long after the last ones: a system call takes as long as
+/// some short motions.
+const WAITING: usize = 1 << 16;
+const LONGEST_WAIT: Duration = Duration::from_millis(50);
 
 /// How many members ended in each of the possible ways.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -116,12 +130,28 @@ impl Journal {
         let text = serde_json::to_vec(header).map_err(|error| refused(error.into()))?;
         beginning.extend(frame(&text));
         let records = beginning.len() as u64;
-        let mut journal = Journal { path, file, records, shard, tally: Tally::default() };
+        let mut journal = Journal::of(path, file, records, shard);
         journal.begin(&beginning, header)?;
         let refused = |source| SweepError::Journal { journal: journal.path.clone(), source };
         let (tally, end) = journal.scan().map_err(refused)?;
         journal.file.set_len(end).map_err(refused)?;
-        Ok(Journal { tally, ..journal })
+        Ok(Journal { kept: tally.done, length: end, tally, ..journal })
+    }
+
+    fn of(path: PathBuf, file: File, records: u64, shard: Shard) -> Journal {
+        let tally = Tally::default();
+        Journal {
+            path,
+            file,
+            waiting: Vec::new(),
+            ends: Vec::new(),
+            written: Instant::now(),
+            kept: 0,
+            length: records,
+            records,
+            shard,
+            tally,
+        }
     }
 
     /// Opens a journal for reading only and returns it with its header, from which `shard` finds out which
@@ -141,7 +171,7 @@ impl Journal {
             Err(TryLockError::WouldBlock) => return Err(SweepError::InUse { journal: path }),
             Err(TryLockError::Error(source)) => return Err(refused(source)),
         }
-        let mut journal = Journal { path, file, records: 0, shard: Shard::ALL, tally: Tally::default() };
+        let mut journal = Journal::of(path, file, 0, Shard::ALL);
         let mut reader = journal
             .reader(0)
             .map_err(|source| SweepError::Journal { journal: journal.path.clone(), source })?;
@@ -197,16 +227,38 @@ impl Journal {
         Ok((tally, end))
     }
 
-    /// Appends the record of the next member.
+    /// Appends the record of the next member, which is in the file after [`flush`](Journal::flush) at the latest.
     ///
     /// # Errors
     /// [`SweepError::Append`]
     pub(crate) fn append(&mut self, record: &Record) -> Result<(), SweepError> {
-        let written = self.file.write_all(&frame(&record.to_bytes()));
-        let done = self.tally.done;
-        written.map_err(|source| SweepError::Append { journal: self.path.clone(), done, source })?;
+        self.waiting.extend(frame(&record.to_bytes()));
+        self.ends.push(self.waiting.len() as u64);
         self.tally.count(record);
+        if self.waiting.len() >= WAITING || self.written.elapsed() >= LONGEST_WAIT {
+            self.flush()?;
+        }
         Ok(())
+    }
+
+    /// Writes the records that wait for others.
+    ///
+    /// # Errors
+    /// [`SweepError::Append`]
+    pub(crate) fn flush(&mut self) -> Result<(), SweepError> {
+        let outcome = self.file.write_all(&self.waiting);
+        let written = match &outcome {
+            Ok(()) => self.waiting.len() as u64,
+            // As much as there was room for.
+            Err(_) => self.file.metadata().map_or(0, |file| file.len().saturating_sub(self.length)),
+        };
+        self.kept += self.ends.partition_point(|&end| end <= written) as u64;
+        self.length += written;
+        self.waiting.clear();
+        self.ends.clear();
+        self.written = Instant::now();
+        let done = self.kept;
+        outcome.map_err(|source| SweepError::Append { journal: self.path.clone(), done, source })
     }
 
     /// The shard whose members the journal contains.

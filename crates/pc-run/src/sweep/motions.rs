@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use pc_expr::{LaneField, VectorField};
 use pc_model::document::NamedExpression;
-use pc_model::{Flow, Model, ModelError, Prototype, Variables};
+use pc_model::{Flow, MemberValues, Model, ModelError, Prototype, Variables};
 use pc_solve::{Ending, Ensemble, EnsembleError, Events, Options, Solution, Solve, Stop, Trajectory};
 
 use super::design::Design;
@@ -39,13 +39,21 @@ pub(crate) struct Motions {
     /// The number of rows that are recorded.
     rows: usize,
     prototype: Option<Arc<Prototype>>,
+    /// Which numbers of a row should stay constant.
+    conserved: Range<usize>,
     /// How many members were completed side by side with others.
     beside: AtomicU64,
 }
 
-/// A member before its motion: its equations and what is known about it; or else its record, which is none if
-/// the time limit had passed.
-type Begun = Result<Box<(Flow, Record)>, Option<Record>>;
+/// A member before its motion, with what is known about it.
+enum Begun {
+    /// Its values alone, while it is integrated side by side with others.
+    Beside(Box<(MemberValues, Record)>),
+    /// Its equations.
+    Alone(Box<(Flow, Record)>),
+    /// Its record, which is none if the time limit had passed.
+    Ended(Option<Record>),
+}
 
 impl Motions {
     /// The work of integrating the members. `all_rows` says whether all rows of the plan are recorded instead
@@ -77,6 +85,7 @@ impl Motions {
             options: plan.options(&tolerances),
             tolerances,
             all_rows,
+            conserved: shown.conserved,
             rows: if all_rows { plan.samples } else { 1 },
             plan,
             prototype,
@@ -88,35 +97,56 @@ impl Motions {
     /// and its start.
     fn begin(&self, member: u64) -> (Begun, Option<(LaneField, Vec<f64>)>) {
         let blank = self.members.blank(member);
-        match self.flow(&self.members.model(&blank)) {
-            Ok(mut flow) => {
+        let model = self.members.model(&blank);
+        if let Some((field, values)) =
+            self.prototype.as_ref().and_then(|known| known.lane(&model, self.plan.t_start))
+        {
+            let start = values.start.clone();
+            return (Begun::Beside(Box::new((values, blank))), Some((field, start)));
+        }
+        match self.alone(&model, blank) {
+            Begun::Alone(mut begun) => {
+                let flow = &mut begun.0;
                 let free = flow.events.events().is_empty() && flow.motion.breaks().is_empty();
                 let lane = if free { flow.motion.lanes() } else { None };
                 let lane = lane.map(|field| (field, flow.start.clone()));
-                (Ok(Box::new((flow, blank))), lane)
+                (Begun::Alone(begun), lane)
             }
-            Err(error) => (Err(self.members.ended(Status::Refused, &error, blank)), None),
+            ended => (ended, None),
+        }
+    }
+
+    /// A member with its own equations.
+    fn alone(&self, model: &Model, blank: Record) -> Begun {
+        match self.flow(model) {
+            Ok(flow) => Begun::Alone(Box::new((flow, blank))),
+            Err(error) => Begun::Ended(self.members.ended(Status::Refused, &error, blank)),
         }
     }
 
     /// The record of a member that was completed side by side with others.
     fn completed(&self, begun: Begun, trajectory: &Trajectory) -> Option<Record> {
-        let (mut flow, blank) = *begun.ok()?;
+        let rows_of = |flow: &mut Flow| self.rows_of(flow, trajectory, None);
+        let (rows, blank) = match begun {
+            Begun::Beside(begun) => (self.prototype.as_ref()?.with(&begun.0, rows_of), begun.1),
+            Begun::Alone(mut begun) => (rows_of(&mut begun.0), begun.1),
+            Begun::Ended(record) => return record,
+        };
         self.beside.fetch_add(1, Ordering::Relaxed);
-        Some(Record {
-            status: Status::Completed,
-            steps: trajectory.statistics().steps,
-            rows: self.rows_of(&mut flow, trajectory, None),
-            ..blank
-        })
+        Some(Record { status: Status::Completed, steps: trajectory.statistics().steps, rows, ..blank })
     }
 
     /// Integrates a member and returns its record; none if it was stopped before the end, or the time limit
     /// had passed.
     fn integrate(&self, begun: Begun, stop: &Stop<'_>) -> Option<Record> {
+        let begun = match begun {
+            Begun::Beside(begun) => self.alone(&self.members.model(&begun.1), begun.1),
+            other => other,
+        };
         let (mut flow, blank) = match begun {
-            Ok(begun) => *begun,
-            Err(record) => return record,
+            Begun::Alone(begun) => *begun,
+            Begun::Ended(record) => return record,
+            Begun::Beside(_) => unreachable!("has its own equations now"),
         };
         let observer = |_, _: &[f64]| {
             if stop.requested() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -159,16 +189,27 @@ impl Motions {
     /// All rows, or only the last one with the drifts; the end that was `reached`, if given, is a further
     /// row. There is always at least one row.
     fn rows_of(&self, flow: &mut Flow, trajectory: &Trajectory, reached: Option<(f64, &[f64])>) -> Vec<f64> {
-        let table = Table::new(flow, trajectory);
-        let last = reached.map(|(t, y)| std::iter::once(t).chain(flow.row(t, y)).collect::<Vec<f64>>());
-        let nothing = || vec![f64::NAN; table.columns().len()];
+        let mut rows =
+            trajectory.iter().chain(reached).map(|(t, y)| (t, flow.row(t, y))).map(|(t, mut row)| {
+                row.insert(0, t);
+                row
+            });
+        let Some(first) = rows.next() else { return vec![f64::NAN; self.members.columns().len()] };
         if self.all_rows {
-            let rows: Vec<f64> = table.rows().flatten().copied().chain(last.into_iter().flatten()).collect();
-            return if rows.is_empty() { nothing() } else { rows };
+            return rows.fold(first, |mut all, row| {
+                all.extend(row);
+                all
+            });
         }
-        let drifts: Vec<f64> = table.conserved().map(|j| drift(&table, last.as_deref(), j)).collect();
-        let row = last.or_else(|| table.rows().next_back().map(<[f64]>::to_vec));
-        row.unwrap_or_else(nothing).into_iter().chain(drifts).collect()
+        let mut drifts = vec![0.0; self.conserved.len()];
+        let mut last = first.clone();
+        for row in rows {
+            for (drift, j) in drifts.iter_mut().zip(self.conserved.clone()) {
+                *drift = raised(*drift, row[j] - first[j]);
+            }
+            last = row;
+        }
+        [last, drifts].concat()
     }
 }
 
@@ -305,13 +346,4 @@ fn begun(model: &Model, design: &Design, plan: &Plan) -> Begin {
 fn derived(model: &Model, variables: Variables) -> Result<Flow, ModelError> {
     let graph = model.graph();
     Flow::new(model, &model.assemble(&graph)?, variables)
-}
-
-/// The drift max |I(t) − I(t_start)| of column `j`, where one further row may be included.
-fn drift(table: &Table, more: Option<&[f64]>, j: usize) -> f64 {
-    let drift = table.drift(j).absolute;
-    match (table.rows().next(), more) {
-        (Some(first), Some(more)) => raised(drift, more[j] - first[j]),
-        _ => drift,
-    }
 }

@@ -232,7 +232,7 @@ impl Sweep {
             if kept.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         drop(progress);
-        kept?;
+        kept.and(journal.flush())?;
         let done = journal.tally().done;
         if ending? == Ending::Stopped && done < members {
             return Err(match self.deadline.passed() {
