@@ -9,7 +9,7 @@
 //! The rest serves several tests: nonholonomic systems described by closures ([`nonholonomic`]), the definition
 //! of the equations in numbers, which has the library evaluate expressions and nothing else ([`definition`],
 //! over the numbers of [`dual`]), a measure for what rounding may do to a program ([`magnitude`]) and a
-//! workbench for emitted source ([`emitted`]). Models of tests are derived twice ([`verified`]). Random models have a room of their own
+//! workbench for emitted source ([`emitted`]), systems behind the C interface ([`through_c`]). Models of tests are derived twice ([`verified`]). Random models have a room of their own
 //! ([`fuzz`]), and so have attacks on the program from outside ([`attack`]).
 
 pub mod attack;
@@ -23,6 +23,7 @@ pub mod magnitude;
 pub mod malformed;
 pub mod nonholonomic;
 pub mod reference;
+pub mod through_c;
 pub mod verified;
 
 /// The programs of the README, compiled and run.

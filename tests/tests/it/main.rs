@@ -16,6 +16,7 @@ mod event_sensitivities;
 mod frames;
 mod free_forms;
 mod holonomic;
+mod instructions;
 mod integrable_systems;
 mod joints;
 mod malformed;

@@ -50,7 +50,11 @@ const BENCHMARKS: &[Benchmark] = &[
         about: "chains of bodies, joint after joint, derived and by hand",
         run: trees::run,
     },
-    Benchmark { name: "capi", about: "one evaluation, from Rust and through libpc", run: capi::run },
+    Benchmark {
+        name: "capi",
+        about: "evaluations and integrations through libpc, against those by hand",
+        run: capi::run,
+    },
     Benchmark { name: "start", about: "a whole run of the program `pc`, start to exit", run: start::run },
 ];
 

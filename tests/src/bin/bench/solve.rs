@@ -149,9 +149,9 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Error> {
 }
 
 /// What came of one integration.
-struct Answer {
+pub(crate) struct Answer {
     milliseconds: f64,
-    steps: u64,
+    pub(crate) steps: u64,
     evaluations: u64,
     end: Vec<f64>,
 }
@@ -168,7 +168,7 @@ fn check(problem: &Problem, rtol: f64, a: &Answer, b: &Answer) -> Result<(), Err
 }
 
 /// The C program, waiting for its turn.
-struct Plain {
+pub(crate) struct Plain {
     child: Child,
     input: ChildStdin,
     output: BufReader<ChildStdout>,
@@ -176,7 +176,7 @@ struct Plain {
 }
 
 impl Plain {
-    fn start(program: &Path, system: &str, rtol: f64) -> Result<Plain, Error> {
+    pub(crate) fn start(program: &Path, system: &str, rtol: f64) -> Result<Plain, Error> {
         let arguments = [system.to_owned(), format!("{rtol:e}"), format!("{:e}", rtol * 1e-3)];
         let command = format!("plain_cvode {}", arguments.join(" "));
         let failed = |source| Error::Start { command: command.clone(), source };
@@ -191,7 +191,7 @@ impl Plain {
         Ok(Plain { child, input, output: BufReader::new(output), command })
     }
 
-    fn integrate(&mut self, scale: f64) -> Result<Answer, Error> {
+    pub(crate) fn integrate(&mut self, scale: f64) -> Result<Answer, Error> {
         let mut answer = String::new();
         self.input
             .write_all(format!("{scale:e}\n").as_bytes())
@@ -220,7 +220,7 @@ fn read(answer: &str) -> Option<Answer> {
 }
 
 /// The C program, compiled against the library that is linked to us.
-fn compiled(directory: &Path) -> Result<PathBuf, Error> {
+pub(crate) fn compiled(directory: &Path) -> Result<PathBuf, Error> {
     let sundials = sundials()?;
     let program = directory.join(format!("plain_cvode{}", env::consts::EXE_SUFFIX));
     let mut command = Command::new(env::var_os("CC").unwrap_or_else(|| "cc".into()));
