@@ -30,6 +30,7 @@ pub fn compile(program: Arc<Program>) -> Box<dyn Kernel> {
 }
 
 /// The same, for [`Kernel::eval_leading`] with that many leading outputs.
+#[cfg_attr(not(feature = "jit"), expect(unused_variables, reason = "machine code alone is made for them"))]
 fn compile_with(program: Arc<Program>, leading: usize) -> Box<dyn Kernel> {
     #[cfg(feature = "jit")]
     if program.code().len() <= LONGEST_MACHINE_CODE
