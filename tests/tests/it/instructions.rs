@@ -8,13 +8,14 @@ use std::path::Path;
 use std::process::Command;
 use std::{env, fs};
 
-/// Counts may grow by this part: the library's own functions, of which there are several versions, are among them.
-const SLACK: f64 = 0.03;
+/// Counts may grow by this part: functions of the C library, which chooses among several by the processor, are
+/// among them.
+const SLACK: f64 = 0.1;
 
 #[test]
 fn evaluations_and_steps_take_no_more_instructions() {
-    if cfg!(not(all(target_arch = "x86_64", target_os = "linux"))) {
-        eprintln!("skipped: the kept counts are those of x86-64 under Linux");
+    if !is_as_kept() {
+        eprintln!("skipped: the kept counts are those of x86-64 with AVX2 and FMA under Linux");
         return;
     }
     let directory = tempfile::tempdir().unwrap();
@@ -62,6 +63,14 @@ fn evaluations_and_steps_take_no_more_instructions() {
             kept[name]
         );
     }
+}
+
+/// Whether this is a processor of the kind for which counts are kept.
+fn is_as_kept() -> bool {
+    #[cfg(all(target_arch = "x86_64", target_os = "linux"))]
+    return is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
+    #[cfg(not(all(target_arch = "x86_64", target_os = "linux")))]
+    return false;
 }
 
 /// The instructions of each function called from another one, with those of the functions that it calls.
