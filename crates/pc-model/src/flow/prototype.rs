@@ -84,7 +84,7 @@ impl Prototype {
         let prototype = self.flow.lock().unwrap_or_else(PoisonError::into_inner);
         let mut flow = prototype.with_values(&values.parameters, values.start.clone());
         drop(prototype);
-        self.fits(&mut flow, t, &values).then_some(flow)
+        fits(&mut flow, t, &values).then_some(flow)
     }
 
     /// The field of a model that has the same text, for [lanes](VectorField::lanes), with its values; `None` where
@@ -94,7 +94,7 @@ impl Prototype {
         let field = self.with(&values, |flow| {
             let free = flow.events.events().is_empty() && flow.motion.breaks().is_empty();
             let field = if free { flow.motion.lanes() } else { None };
-            field.filter(|_| self.fits(flow, t, &values))
+            field.filter(|_| fits(flow, t, &values))
         })?;
         Some((field, values))
     }
@@ -129,21 +129,21 @@ impl Prototype {
         let start = self.places.iter().map(|place| place.map_or(0.0, |place| values[place])).collect();
         is_known.then_some(MemberValues { parameters, start })
     }
+}
 
-    /// Whether a flow with these values starts on its constraints, with a row and rates that are finite.
-    fn fits(&self, flow: &mut Flow, t: f64, MemberValues { start, .. }: &MemberValues) -> bool {
-        if flow.motion.keep_from(t, start).is_err() {
-            return false;
-        }
-        let mut nearest = start.clone();
-        if flow.motion.project(t, &mut nearest).is_err() {
-            return false;
-        }
-        let largest = start.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
-        let near = |(a, b): (&f64, &f64)| (a - b).abs() <= ON_CONSTRAINTS * a.abs() + ROUNDING * largest;
-        let on = start.iter().zip(&nearest).all(near);
-        let mut rate = vec![0.0; nearest.len()];
-        on && flow.motion.rhs(t, start, &mut rate).is_ok()
-            && flow.row(t, start).iter().chain(&rate).all(|value| value.is_finite())
+/// Whether a flow with these values starts on its constraints, with a row and rates that are finite.
+fn fits(flow: &mut Flow, t: f64, MemberValues { start, .. }: &MemberValues) -> bool {
+    if flow.motion.keep_from(t, start).is_err() {
+        return false;
     }
+    let mut nearest = start.clone();
+    if flow.motion.project(t, &mut nearest).is_err() {
+        return false;
+    }
+    let largest = start.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
+    let near = |(a, b): (&f64, &f64)| (a - b).abs() <= ON_CONSTRAINTS * a.abs() + ROUNDING * largest;
+    let on = start.iter().zip(&nearest).all(near);
+    let mut rate = vec![0.0; nearest.len()];
+    on && flow.motion.rhs(t, start, &mut rate).is_ok()
+        && flow.row(t, start).iter().chain(&rate).all(|value| value.is_finite())
 }

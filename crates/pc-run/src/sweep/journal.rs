@@ -11,7 +11,10 @@
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+use std::time::Duration;
 
 use super::error::SweepError;
 use super::record::{Record, Status};
@@ -29,8 +32,8 @@ pub struct Journal {
     /// Frames that are not yet in the file, and where each of them ends.
     waiting: Vec<u8>,
     ends: Vec<u64>,
-    /// When frames were last written.
-    written: Instant,
+    /// Why frames could not be written between two appends.
+    failed: Option<SweepError>,
     /// How many members are in the file, and its length.
     kept: u64,
     length: u64,
@@ -54,8 +57,7 @@ pub trait Records {
     fn kept(&self) -> Option<&Path>;
 }
 
-/// Records wait for others until they are as many bytes, or come so long after the last ones: a system call takes as long as
-/// some short motions.
+/// Records wait for others until they are as many bytes, or for so long: a system call takes as long as some short motions.
 const WAITING: usize = 1 << 16;
 const LONGEST_WAIT: Duration = Duration::from_millis(50);
 
@@ -145,7 +147,7 @@ impl Journal {
             file,
             waiting: Vec::new(),
             ends: Vec::new(),
-            written: Instant::now(),
+            failed: None,
             kept: 0,
             length: records,
             records,
@@ -232,13 +234,34 @@ impl Journal {
     /// # Errors
     /// [`SweepError::Append`]
     pub(crate) fn append(&mut self, record: &Record) -> Result<(), SweepError> {
+        if let Some(error) = self.failed.take() {
+            return Err(error);
+        }
         self.waiting.extend(frame(&record.to_bytes()));
         self.ends.push(self.waiting.len() as u64);
         self.tally.count(record);
-        if self.waiting.len() >= WAITING || self.written.elapsed() >= LONGEST_WAIT {
-            self.flush()?;
-        }
-        Ok(())
+        if self.waiting.len() >= WAITING { self.write_waiting() } else { Ok(()) }
+    }
+
+    /// Does some work that appends records, and writes those that wait at least every 50 ms meanwhile, however long the next
+    /// one takes.
+    pub(crate) fn while_writing<T>(journal: &Mutex<&mut Journal>, work: impl FnOnce() -> T) -> T {
+        thread::scope(|scope| {
+            let (working, is_over) = channel::<()>();
+            scope.spawn(move || {
+                while is_over.recv_timeout(LONGEST_WAIT) == Err(RecvTimeoutError::Timeout) {
+                    let mut journal = journal.lock().unwrap_or_else(PoisonError::into_inner);
+                    if journal.failed.is_none()
+                        && let Err(error) = journal.write_waiting()
+                    {
+                        journal.failed = Some(error);
+                    }
+                }
+            });
+            // Closed at the end of the work, also if it panics.
+            let _working = working;
+            work()
+        })
     }
 
     /// Writes the records that wait for others.
@@ -246,6 +269,11 @@ impl Journal {
     /// # Errors
     /// [`SweepError::Append`]
     pub(crate) fn flush(&mut self) -> Result<(), SweepError> {
+        self.failed.take().map_or(Ok(()), Err)?;
+        self.write_waiting()
+    }
+
+    fn write_waiting(&mut self) -> Result<(), SweepError> {
         let outcome = self.file.write_all(&self.waiting);
         let written = match &outcome {
             Ok(()) => self.waiting.len() as u64,
@@ -256,7 +284,6 @@ impl Journal {
         self.length += written;
         self.waiting.clear();
         self.ends.clear();
-        self.written = Instant::now();
         let done = self.kept;
         outcome.map_err(|source| SweepError::Append { journal: self.path.clone(), done, source })
     }
@@ -342,4 +369,41 @@ fn read_magic(reader: &mut impl Read) -> io::Result<()> {
     let mut magic = [0; MAGIC.len()];
     reader.read_exact(&mut magic)?;
     if magic == MAGIC { Ok(()) } else { Err(io::ErrorKind::InvalidData.into()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Instant;
+
+    use super::*;
+
+    /// Records that come together are in the file soon, even if no other follows.
+    #[test]
+    fn records_do_not_wait_for_the_next_one() {
+        let directory = tempfile::tempdir().expect("a directory");
+        let path = directory.path().join("a.csv.partial");
+        let mut journal = Journal::open(path.clone(), Shard::ALL, &Identity::new()).expect("a journal");
+        let record = |member| Record {
+            member,
+            status: Status::Completed,
+            steps: 1,
+            message: String::new(),
+            values: Vec::new(),
+            rows: vec![1.0],
+            words: Vec::new(),
+        };
+        let (empty, each) = (journal.length, frame(&record(0).to_bytes()).len() as u64);
+        let shared = Mutex::new(&mut journal);
+        Journal::while_writing(&shared, || {
+            for member in 0..3 {
+                shared.lock().expect("no panic").append(&record(member)).expect("written");
+            }
+            let begun = Instant::now();
+            while std::fs::metadata(&path).expect("a file").len() < empty + 3 * each {
+                assert!(begun.elapsed() < Duration::from_secs(30), "they are never written");
+                thread::sleep(Duration::from_millis(5));
+            }
+        });
+        assert_eq!((journal.kept, journal.tally.done), (3, 3));
+    }
 }

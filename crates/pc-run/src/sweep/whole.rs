@@ -10,6 +10,7 @@
 use std::num::NonZeroUsize;
 use std::ops::{ControlFlow, Range};
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -222,14 +223,15 @@ impl Sweep {
         let start = Instant::now();
         let mut progress = observer.members(before, members);
         let mut kept = Ok(());
-        let ending = self.each(shard, before..members, observer, &mut |place, record| {
-            kept = self
-                .sweep_columns
-                .check(&record)
-                .map_err(SweepError::from)
-                .and_then(|()| journal.append(&record));
-            progress(place + 1);
-            if kept.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        let shared = Mutex::new(&mut *journal);
+        let ending = Journal::while_writing(&shared, || {
+            self.each(shard, before..members, observer, &mut |place, record| {
+                let mut journal = shared.lock().unwrap_or_else(PoisonError::into_inner);
+                let checked = self.sweep_columns.check(&record).map_err(SweepError::from);
+                kept = checked.and_then(|()| journal.append(&record));
+                progress(place + 1);
+                if kept.is_err() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            })
         });
         drop(progress);
         kept.and(journal.flush())?;
