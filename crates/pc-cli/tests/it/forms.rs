@@ -261,6 +261,19 @@ fn file(directory: &tempfile::TempDir, text: &str) -> String {
     path.display().to_string()
 }
 
+/// With affine constraints the energy of new quasi-velocities, Y·V − L, is not that of the velocities of the
+/// model, y·η − L: they differ by y times the velocities that are left where V is zero.
+#[test]
+fn the_energy_of_hamel_is_that_of_the_velocities_printed() {
+    let directory = tempfile::tempdir().expect("a directory");
+    let text = "[coordinates]\nx = 0.3\ny = 0.2\n[constraints]\nk = \"y' - x' - 1\"\n[lagrangian]\n\
+                kinetic = \"(x'^2 + y'^2)/2\"\n[simulation]\nt_end = 1.0\n";
+    let path = file(&directory, text);
+    let text = said(&["derive", &path, "--project-start", "--form", "hamel", "V=x'+y'"]);
+    // x' = (V − 1)/2 and y' = (V + 1)/2, hence L = (V² + 1)/4.
+    assert!(text.contains("Energy\n  ¼ (V² - 1)\n"), "{text}");
+}
+
 /// `derive` and `run` take `form` and `hamel` of a file; the command line has precedence.
 #[test]
 fn a_file_says_its_form() {

@@ -51,6 +51,9 @@ struct Change<'g> {
     /// The rates of the independent quasi-velocities of the model, in terms of the new quasi-velocities and
     /// their rates.
     rates: Vec<Expr<'g>>,
+    /// η°, the independent quasi-velocities of the model where the new ones are zero. It differs from zero if
+    /// constraints are affine.
+    at_rest: Vec<Expr<'g>>,
 }
 
 /// A left side.
@@ -227,7 +230,7 @@ impl<'g> Printed<'g> {
         let direct = self.direct.iter().map(|&(_, value)| value);
         let ways = self.ways.iter().flat_map(|way| way.mass.iter().chain(&way.right)).copied();
         let reactions = self.sheet.reactions.iter().map(|&(_, value)| value);
-        let change = self.change.iter().flat_map(|change| change.definitions.iter().chain(&change.rates));
+        let change = self.change.iter().flat_map(Change::all);
         direct.chain(ways).chain(reactions).chain(change.copied()).collect()
     }
 
@@ -272,6 +275,17 @@ impl<'g> Printed<'g> {
         }
         let direct: Vec<Expr<'g>> = self.direct.iter().map(|&(_, value)| value).collect();
         let mut values = evaluate(&direct, &at)?;
+        if let Some(change) = self.change.as_ref().filter(|change| change.shifts()) {
+            // η = η° + A⁻¹V and Y = A⁻ᵀy, hence y·η − L = Y·V − L + y·η°.
+            let momenta: Vec<Quantity> = (0..free.len()).map(Quantity::Momentum).collect();
+            let momenta = second.quantities(&here.derived, &momenta, Some(free), &exact)?;
+            let at_rest = evaluate(&change.at_rest, &at)?;
+            let shift: f64 = momenta.iter().zip(at_rest).map(|(y, eta)| y.value * eta).sum();
+            let energies = self.direct.iter().zip(&mut values);
+            energies
+                .filter(|((side, _), _)| matches!(side, Side::Energy))
+                .for_each(|(_, energy)| *energy += shift);
+        }
         let mut rates = Vec::new();
         for way in &self.ways {
             let right = evaluate(&way.right, &at)?;
@@ -310,6 +324,7 @@ impl<'g> Change<'g> {
     fn of(form: &FreeForm<'_>, page: &'g Graph) -> Change<'g> {
         let (system, graph) = (&form.system, form.system.graph());
         let (eta, frame, accelerations) = (system.quasi_velocities(), system.frame(), system.accelerations());
+        let zero: Vec<_> = eta.iter().map(|&eta| (eta, 0.into())).collect();
         let along: Vec<_> = (frame.coordinates().iter().copied().zip(frame.velocities(eta)))
             .chain(eta.iter().copied().zip(accelerations.iter().copied()))
             .chain([(frame.time(), 1.into())])
@@ -319,7 +334,18 @@ impl<'g> Change<'g> {
             rates: graph.transcribe(&graph.directional(&form.values, &along), page),
             definitions: graph.transcribe(&form.definitions, page),
             accelerations: graph.transcribe(&accelerations, page),
+            at_rest: graph.transcribe(&graph.substitute(&form.values, &zero), page),
         }
+    }
+
+    /// All expressions.
+    fn all(&self) -> impl Iterator<Item = &Expr<'g>> {
+        self.definitions.iter().chain(&self.rates).chain(&self.at_rest)
+    }
+
+    /// Whether the quasi-velocities of the model differ from zero where the new ones are zero.
+    fn shifts(&self) -> bool {
+        self.at_rest.iter().any(|eta| !eta.is_zero())
     }
 
     /// Whether a symbol is a quasi-velocity that does not belong to the model, or the rate of one.
