@@ -32,7 +32,7 @@ pub struct TaylorSeries {
     recurrences: Arc<Recurrences>,
     zeroth: Box<dyn Kernel>,
     next: Box<dyn Kernel>,
-    sum: fn(Rows<'_>, usize, &mut [f64]),
+    sum: Summation,
     /// The results of order 0, then a row for each order, starting at an offset aligned for vectors.
     memory: Vec<f64>,
     begin: usize,
@@ -79,8 +79,8 @@ impl TaylorSeries {
         };
         let sum = match backend {
             #[cfg(feature = "jit")]
-            Backend::Fastest => crate::kernel::jit::sums::fastest(),
-            _ => sums,
+            Backend::Fastest => Summation::Vectors(crate::kernel::jit::sums::fastest()),
+            _ => Summation::OneByOne,
         };
         TaylorSeries::of(Arc::new(recurrences), kernel(zeroth), kernel(next), sum)
     }
@@ -89,7 +89,7 @@ impl TaylorSeries {
         recurrences: Arc<Recurrences>,
         zeroth: Box<dyn Kernel>,
         next: Box<dyn Kernel>,
-        sum: fn(Rows<'_>, usize, &mut [f64]),
+        sum: Summation,
     ) -> TaylorSeries {
         let Recurrences { dim, watched, factors, sums, ref branches, .. } = *recurrences;
         let input = dim + EXTRA + sums;
@@ -136,7 +136,7 @@ impl TaylorSeries {
             } else {
                 let last = (k - 2) * stride;
                 let (factors, sums) = known.split_at_mut(last + written + EXTRA);
-                (self.sum)(Rows { numbers: factors, stride, sums: width }, k, &mut sums[..width]);
+                self.sum.write(Rows { numbers: factors, stride, sums: width }, k, &mut sums[..width]);
                 &known[last..][input.clone()]
             };
             self.next.eval(1.0 / k as f64, input, factors, &mut row[..written]);
@@ -229,6 +229,27 @@ impl TaylorSeries {
             let row = &mut numbers[self.head + (k - 1) * self.stride..];
             let next = (k + 1) as f64;
             row[place..place + EXTRA].copy_from_slice(&[next, 0.0, (-next).mul_add(1.0 / next, 1.0) / next]);
+        }
+    }
+}
+
+/// How the sums of products are computed.
+#[derive(Clone, Copy)]
+enum Summation {
+    /// As in the interpreter.
+    OneByOne,
+    /// As in compiled code.
+    #[cfg(feature = "jit")]
+    Vectors(crate::kernel::jit::sums::Sums),
+}
+
+impl Summation {
+    #[inline]
+    fn write(self, rows: Rows<'_>, k: usize, out: &mut [f64]) {
+        match self {
+            Summation::OneByOne => sums(rows, k, out),
+            #[cfg(feature = "jit")]
+            Summation::Vectors(by_vectors) => by_vectors.write(rows, k, out),
         }
     }
 }

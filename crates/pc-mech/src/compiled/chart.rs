@@ -11,8 +11,8 @@ use crate::system::system::System;
 /// it.
 const AT_REST: f64 = 1e-9;
 
-/// The distance from either end of a step, as a fraction of its length, at which the slope of the determinant
-/// is estimated.
+/// The distance from either end of a step, as a fraction of its length, at which the slope of a determinant
+/// without derivatives is estimated.
 const SLOPE: f64 = 1e-4;
 
 /// A determinant that falls to this fraction of its values at both ends of a step is taken to vanish between
@@ -35,16 +35,41 @@ pub(crate) struct Chart {
     coordinates: usize,
     parameters: usize,
     entries: Evaluator,
-    /// The determinant without constant factors, if it is a short expression.
-    short: Option<Evaluator>,
+    short: Option<Short>,
     /// The number of rows of the matrix, and whether its columns belong to ẋ.
     size: usize,
     of_velocities: bool,
     room: Vec<f64>,
-    /// A state between the ends of a step.
-    between: Vec<f64>,
-    /// Time, coordinates, parameters and determinant at the end of the last step: the start of the next one.
-    last: Vec<f64>,
+    /// A state between the ends of a step, and the determinant there.
+    between: End,
+    /// The start of the step, and its end: the start of the next one.
+    start: End,
+    end: End,
+}
+
+/// A determinant that is a short expression, without constant factors.
+#[derive(Clone, Debug)]
+struct Short {
+    /// The determinant, then its derivatives.
+    program: Evaluator,
+    /// The coordinates on which it depends; `None` is time.
+    arguments: Vec<Option<usize>>,
+}
+
+/// The determinant at one end of a step.
+#[derive(Clone, Debug, Default)]
+struct End {
+    t: f64,
+    x: Vec<f64>,
+    parameters: Vec<f64>,
+    /// The determinant, then its derivatives if it is short.
+    values: Vec<f64>,
+}
+
+impl End {
+    fn is_at(&self, t: f64, x: &[f64], parameters: &[f64]) -> bool {
+        self.t == t && self.x == x && self.parameters == parameters
+    }
 }
 
 /// How a determinant behaves between the ends of a step.
@@ -118,13 +143,45 @@ impl Chart {
             Ok(Evaluator::new(Program::new(system.graph(), &inputs, outputs)?, backend))
         };
         let entries = evaluator(&a.entries(), Backend::Interpreter)?;
-        let short = short.map(|determinant| evaluator(&[determinant], Backend::Fastest)).transpose()?;
         let (coordinates, parameters) = (inputs.state.len(), inputs.parameters.len());
+        let short = short.map(|determinant| {
+            let time = [(None, frame.time())].into_iter();
+            let symbols = time.chain((0..coordinates).map(|i| (Some(i), inputs.state[i])));
+            let (arguments, symbols): (Vec<_>, Vec<_>) =
+                symbols.filter(|&(_, symbol)| determinant.depends_on(symbol)).unzip();
+            let slopes = system.graph().gradient(determinant, &symbols);
+            let outputs = [&[determinant], &slopes[..]].concat();
+            Ok::<_, MechError>(Short { program: evaluator(&outputs, Backend::Fastest)?, arguments })
+        });
+        let short = short.transpose()?;
         let size = a.rows();
         let room = vec![0.0; size * size];
-        let between = vec![0.0; coordinates];
-        let last = Vec::with_capacity(coordinates + parameters + 2);
-        Ok(Some(Chart { coordinates, parameters, entries, short, size, of_velocities, room, between, last }))
+        let end = End {
+            t: f64::NAN,
+            x: vec![f64::NAN; coordinates],
+            parameters: vec![f64::NAN; parameters],
+            values: vec![f64::NAN; short.as_ref().map_or(1, |short| 1 + short.arguments.len())],
+        };
+        let (start, between) = (end.clone(), end.clone());
+        Ok(Some(Chart {
+            coordinates,
+            parameters,
+            entries,
+            short,
+            size,
+            of_velocities,
+            room,
+            between,
+            start,
+            end,
+        }))
+    }
+
+    /// Compiles what each step evaluates, so that clones share it.
+    pub(crate) fn prepare(&mut self) {
+        if let Some(short) = &mut self.short {
+            short.program.prepare();
+        }
     }
 
     /// The matrix at (t, x), row by row.
@@ -133,44 +190,46 @@ impl Chart {
         &mut self.room
     }
 
-    fn determinant(&mut self, t: f64, x: &[f64], parameters: &[f64]) -> f64 {
+    /// Writes the determinant, then its derivatives if it is short.
+    fn write(&mut self, t: f64, x: &[f64], parameters: &[f64], values: &mut [f64]) {
         if let Some(short) = &mut self.short {
-            let mut value = [0.0];
-            short.eval(t, &x[..self.coordinates], &parameters[..self.parameters], &mut value);
-            return value[0];
+            return short.program.eval(t, &x[..self.coordinates], &parameters[..self.parameters], values);
         }
         let n = self.size;
-        determinant(self.matrix(t, x, parameters), n)
+        values[0] = determinant(self.matrix(t, x, parameters), n);
     }
 
-    /// The determinant at the start of a step, which is known from the end of the last one unless the state
-    /// has jumped.
-    fn at_start(&mut self, (t, y): (f64, &[f64]), parameters: &[f64]) -> f64 {
-        let here =
-            [t].into_iter().chain(y[..self.coordinates].iter().copied()).chain(parameters.iter().copied());
-        match self.last.split_last() {
-            Some((&known, place)) if here.eq(place.iter().copied()) => known,
-            _ => self.determinant(t, y, parameters),
-        }
-    }
-
-    fn remember(&mut self, (t, y): (f64, &[f64]), parameters: &[f64], value: f64) {
-        self.last.clear();
-        self.last.push(t);
-        self.last.extend_from_slice(&y[..self.coordinates]);
-        self.last.extend_from_slice(parameters);
-        self.last.push(value);
+    /// Measures the determinant at the end of the step.
+    fn measure(&mut self, (t, y): (f64, &[f64]), parameters: &[f64]) {
+        let mut end = std::mem::take(&mut self.end);
+        end.t = t;
+        end.x.copy_from_slice(&y[..self.coordinates]);
+        end.parameters.copy_from_slice(&parameters[..self.parameters]);
+        self.write(t, y, parameters, &mut end.values);
+        self.end = end;
     }
 
     /// The determinant on the line from one end of a step to the other, at the fraction `s` of the way.
     fn along(&mut self, s: f64, from: (f64, &[f64]), to: (f64, &[f64]), parameters: &[f64]) -> f64 {
-        let mut x = std::mem::take(&mut self.between);
-        for (x, (a, b)) in x.iter_mut().zip(from.1.iter().zip(to.1)) {
+        let mut between = std::mem::take(&mut self.between);
+        for (x, (a, b)) in between.x.iter_mut().zip(from.1.iter().zip(to.1)) {
             *x = a + s * (b - a);
         }
-        let value = self.determinant(from.0 + s * (to.0 - from.0), &x, parameters);
-        self.between = x;
+        self.write(from.0 + s * (to.0 - from.0), &between.x, parameters, &mut between.values);
+        let value = between.values[0];
+        self.between = between;
         value
+    }
+
+    /// The slopes of the determinant at both ends of a step on this line, or numbers of the same signs.
+    fn slopes(&mut self, from: (f64, &[f64]), to: (f64, &[f64]), parameters: &[f64]) -> [f64; 2] {
+        let Some(Short { arguments, .. }) = &self.short else {
+            let start = self.along(SLOPE, from, to, parameters) - self.start.values[0];
+            return [start, self.end.values[0] - self.along(1.0 - SLOPE, from, to, parameters)];
+        };
+        let way = |argument: &Option<usize>| argument.map_or(to.0 - from.0, |i| to.1[i] - from.1[i]);
+        [&self.start, &self.end]
+            .map(|end| arguments.iter().zip(&end.values[1..]).map(|(at, slope)| slope * way(at)).sum())
     }
 
     /// The zero or pole of the determinant between the ends of a step, if there is one.
@@ -180,12 +239,16 @@ impl Chart {
         to: (f64, &[f64]),
         parameters: &[f64],
     ) -> Option<Passage> {
-        let start = self.at_start(from, parameters);
-        let end = self.determinant(to.0, to.1, parameters);
-        self.remember(to, parameters, end);
-        let mut along = |s: f64| self.along(s, from, to, parameters);
+        // A step starts where the last one has ended unless the state has jumped.
+        if !self.end.is_at(from.0, &from.1[..self.coordinates], &parameters[..self.parameters]) {
+            self.measure(from, parameters);
+        }
+        std::mem::swap(&mut self.start, &mut self.end);
+        self.measure(to, parameters);
+        let (start, end) = (self.start.values[0], self.end.values[0]);
         let (least, most) = (start.abs().min(end.abs()), start.abs().max(end.abs()));
         if start * end < 0.0 {
+            let mut along = |s: f64| self.along(s, from, to, parameters);
             let (mut low, mut high) = (0.0, 1.0);
             for _ in 0..SECTIONS {
                 let middle = 0.5 * (low + high);
@@ -196,16 +259,17 @@ impl Chart {
         }
         // With the same sign at both ends, the question is whether it approaches zero, or infinity, and
         // returns.
-        let slope = along(SLOPE).abs() - start.abs();
-        let comes_back = |slope: f64, before: f64| slope * (end.abs() - before.abs()) < 0.0;
-        if slope == 0.0 || !comes_back(slope, along(1.0 - SLOPE)) {
+        let [leaves, returns] = self.slopes(from, to, parameters).map(|slope| slope * (start + end).signum());
+        let comes_back = leaves * returns < 0.0;
+        if !comes_back {
             return None;
         }
-        if slope < 0.0 {
-            let there = smallest(|s| along(s).abs());
+        let mut along = |s: f64| self.along(s, from, to, parameters).abs();
+        if leaves < 0.0 {
+            let there = smallest(along);
             (there <= VANISHES * least).then_some(Passage::Zero)
         } else {
-            let there = smallest(|s| along(s).abs().recip());
+            let there = smallest(|s| along(s).recip());
             (there * most <= VANISHES).then_some(Passage::Pole)
         }
     }

@@ -451,6 +451,7 @@ impl Motion {
     /// Compiles what a method evaluates besides f, so that clones made afterwards share it; otherwise it is compiled on
     /// first use, by each clone. Where a method is not defined for this motion, nothing is compiled.
     pub fn prepare(&mut self, method: Method) {
+        self.charts.iter_mut().for_each(Chart::prepare);
         match (method, &mut self.form) {
             (Method::Taylor, _) => {
                 // The method gives the reason where there is no series.

@@ -9,6 +9,7 @@ use std::slice;
 use sundials_sys as sys;
 
 use crate::cvode::context::Context;
+use crate::cvode::operations;
 use crate::error::SolveError;
 
 /// A serial `N_Vector`.
@@ -23,6 +24,8 @@ impl Vector {
         // SAFETY: the context is live; a slice is never longer than i64::MAX.
         let raw = unsafe { sys::N_VNew_Serial(values.len() as sys::sunindextype, context.raw()) };
         let raw = context.check_new("N_VNew_Serial", raw)?;
+        // SAFETY: the vector is live, serial and ours alone.
+        unsafe { operations::install(raw.as_ptr()) };
         let mut vector = Vector { raw, data: NonNull::dangling(), len: values.len() };
         // SAFETY: the vector is live and serial; its data stay in place as long as it lives.
         let data = unsafe { numbers_of(vector.raw()) };

@@ -27,8 +27,17 @@ impl Polynomial {
 
     /// Whether all coefficients are finite.
     pub(super) fn is_finite(&self) -> bool {
-        // One pass without branches: c · 0 is NaN unless c is finite, and a NaN persists.
-        self.coefficients.iter().fold(0.0, |sum, c| sum + c * 0.0) == 0.0
+        // One pass without branches: c · 0 is NaN unless c is finite, and a NaN persists. Each sum waits for its
+        // last term, so that there are several.
+        let mut sums = [0.0; 8];
+        let blocks = self.coefficients.chunks_exact(sums.len());
+        let rest = blocks.remainder().iter().fold(0.0, |sum, c| sum + c * 0.0);
+        for block in blocks {
+            for (sum, c) in sums.iter_mut().zip(block) {
+                *sum += c * 0.0;
+            }
+        }
+        sums.iter().sum::<f64>() + rest == 0.0
     }
 
     /// Writes y(s) − y(0) and ẏ(s).

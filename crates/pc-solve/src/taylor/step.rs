@@ -43,7 +43,8 @@ impl<F: VectorField> Taylor<F> {
 
     /// The maximum length of a step along the series.
     pub(super) fn longest(&mut self, towards: f64) -> Result<f64, SolveError> {
-        let mut length = self.tolerances.length(&self.series).min(self.max_step);
+        let known = self.known_length.take();
+        let mut length = known.unwrap_or_else(|| self.tolerances.length(&self.series)).min(self.max_step);
         if !self.branches.is_empty() {
             length = length.min(self.branch_length());
         }
@@ -191,6 +192,7 @@ impl<F: VectorField> Taylor<F> {
     /// Expands the state at the start of `ahead`, at time `t`, on the current sides.
     pub(super) fn expand(&mut self, t: f64) -> Result<(), Refusal> {
         self.statistics.rhs_evaluations += 1;
+        self.known_length = None;
         let order = self.ahead.order();
         let refused = |failure: Failure| Refusal::Shorter(Reason::Rates { t }, Some(failure));
         let series = self.field.expand(t, self.ahead.of_order(0), &self.sides, order).map_err(refused)?;

@@ -40,6 +40,9 @@ pub struct Taylor<F> {
     pub(super) end: f64,
     pub(super) end_low: f64,
     pub(super) ahead: Polynomial,
+    /// The length over which `ahead`, or at the start of a step `series`, is accurate; none if it is still to be
+    /// computed.
+    pub(super) known_length: Option<f64>,
     /// The series of the previous step, while a step is made.
     pub(super) before: Polynomial,
     /// The rounding error of the state at the end of the last step.
@@ -101,6 +104,7 @@ impl<F: VectorField> Taylor<F> {
             before: ahead.clone(),
             end: t0,
             end_low: 0.0,
+            known_length: None,
             low: zeros(),
             next_low: zeros(),
             sides: vec![0.0; branches.len()],
@@ -185,7 +189,9 @@ impl<F: VectorField> Stepper for Taylor<F> {
                     self.statistics.first_step = h;
                 }
                 self.statistics.last_step = h;
-                self.statistics.current_step = self.tolerances.length(&self.ahead).copysign(h);
+                let length = self.tolerances.length(&self.ahead);
+                self.known_length = Some(length);
+                self.statistics.current_step = length.copysign(h);
                 self.statistics.current_time = t;
                 Ok(())
             }

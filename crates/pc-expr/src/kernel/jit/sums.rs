@@ -7,7 +7,16 @@ use std::arch::x86_64::*;
 use crate::taylor::sums::{Rows, sums, sums_by};
 
 /// Writes Σ_{j=1}^{k−1} a_j b_{k−j} for all sums.
-pub(crate) type Sums = fn(Rows<'_>, usize, &mut [f64]);
+#[derive(Clone, Copy)]
+pub(crate) struct Sums(unsafe fn(Rows<'_>, usize, &mut [f64]));
+
+impl Sums {
+    #[inline]
+    pub(crate) fn write(self, rows: Rows<'_>, k: usize, out: &mut [f64]) {
+        // SAFETY: the processor has the features of the function, which checks the lengths.
+        unsafe { (self.0)(rows, k, out) };
+    }
+}
 
 /// The fastest implementation on this processor. The results are the same, to the last bit, for every
 /// width of vectors.
@@ -15,15 +24,17 @@ pub(crate) fn fastest() -> Sums {
     #[cfg(target_arch = "x86_64")]
     {
         if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("fma") {
-            // SAFETY: the processor has the features of the function, which checks the lengths.
-            return |rows, k, out| unsafe { by_eight(rows, k, out) };
+            return Sums(by_eight);
         }
         if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
-            // SAFETY: as above.
-            return |rows, k, out| unsafe { by_four(rows, k, out) };
+            return Sums(by_four);
         }
     }
-    if cfg!(target_arch = "aarch64") { |rows, k, out| sums_by(rows, k, out, f64::mul_add) } else { sums }
+    if cfg!(target_arch = "aarch64") {
+        Sums(|rows, k, out| sums_by(rows, k, out, f64::mul_add))
+    } else {
+        Sums(sums)
+    }
 }
 
 /// A function that adds the terms in the order of
