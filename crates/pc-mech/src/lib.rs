@@ -225,6 +225,7 @@ mod emit;
 mod equations;
 mod error;
 mod numeric;
+mod points;
 #[cfg(test)]
 #[path = "../../../tests/src/classical/random.rs"]
 mod random;

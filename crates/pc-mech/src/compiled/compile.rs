@@ -1,6 +1,8 @@
 //! Compiles equations into a motion.
 
-use pc_expr::Expr;
+use std::rc::Rc;
+
+use pc_expr::{Expr, Graph};
 
 use crate::compiled::change_point::watch::Watch;
 use crate::compiled::elimination::cost;
@@ -8,9 +10,10 @@ use crate::compiled::elimination::numeric::Staged;
 use crate::compiled::elimination::symbolic::Unrolled;
 use crate::compiled::first_order::FirstOrder;
 use crate::compiled::motion::{Form, Motion};
-use crate::compiled::options::CompileOptions;
+use crate::compiled::options::{CompileOptions, TreeElimination};
 use crate::equations::poincare::Equations;
 use crate::error::MechError;
+use crate::points::equations::{PointEquations, may_carry};
 use crate::system::signals::Signals;
 
 /// M⁻¹ is written out if the factorisation of M takes no more operations than the factorisation of a full
@@ -38,11 +41,14 @@ impl<'g> Equations<'g> {
     /// As for [`compile`](Equations::compile).
     pub fn compile_for(&self, options: impl Into<CompileOptions>) -> Result<Motion, MechError> {
         let options = options.into();
+        let graph = self.system.graph().page(self.system.graph().folding());
         let Some(tree) = &self.system.tree else {
+            if let Some(carried) = self.carried_in(&graph, options.elimination)? {
+                return carried.compile(&options, LONGEST_ELIMINATION);
+            }
             return self.first_order().compile(&options, LONGEST_ELIMINATION);
         };
-        let graph = self.system.graph().page(self.system.graph().folding());
-        let equations = self.system.in_graph(tree, &graph).poincare()?;
+        let equations = self.system.in_graph(&graph).poincare()?;
         let first_order = equations.shortest_first_order(options.elimination);
         if let Some(tree) = &first_order.tree {
             tree.check_regular(&first_order.names)?;
@@ -53,6 +59,26 @@ impl<'g> Equations<'g> {
             motion.switches = equations.first_order().switches(&options)?.map(Box::new);
         }
         Ok(motion)
+    }
+
+    /// The first-order system of bodies that carry one another, in another graph, where it takes fewer operations;
+    /// none for other systems.
+    fn carried_in<'n>(
+        &self,
+        graph: &'n Graph,
+        elimination: TreeElimination,
+    ) -> Result<Option<FirstOrder<'n>>, MechError> {
+        if elimination == TreeElimination::Whole || !may_carry(&self.system) || self.has_pieces() {
+            return Ok(None);
+        }
+        let system = self.system.in_graph(graph);
+        let Some(points) = PointEquations::of(&system) else { return Ok(None) };
+        let whole = system.poincare()?.first_order();
+        let carried = FirstOrder { points: Some(Rc::new(points)), ..whole.clone() };
+        let is_shorter = || {
+            cost::operations(&whole.mass) > LONGEST_ELIMINATION || carried.operations() < whole.operations()
+        };
+        Ok((elimination == TreeElimination::ByJoints || is_shorter()).then_some(carried))
     }
 
     /// Whether forces or energies may be piecewise functions.
@@ -85,7 +111,8 @@ impl FirstOrder<'_> {
     ) -> Result<Motion, MechError> {
         let short = || cost::operations(&self.mass) <= longest;
         let unrolled = || short() || !cost::needs_no_pivoting(self.graph, &self.mass);
-        let form = if self.tree.is_some() || self.implicit.is_none() && self.multipliers == 0 && unrolled() {
+        let in_order = self.tree.is_some() || self.points.is_some();
+        let form = if in_order || self.implicit.is_none() && self.multipliers == 0 && unrolled() {
             Form::Unrolled(Box::new(Unrolled::new(self, options)?))
         } else {
             Form::Staged(Box::new(Staged::new(self, options)?))

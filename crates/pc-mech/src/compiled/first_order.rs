@@ -12,6 +12,7 @@ use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::options::TreeElimination;
 use crate::compiled::projection::unit_quaternions::UnitQuaternions;
 use crate::equations::poincare::Equations;
+use crate::points::equations::PointEquations;
 use crate::tree::equations::TreeEquations;
 
 /// The system ẏ = g(t, y, w), whose unknowns w solve M(t, y) w = r(t, y) with M symmetric, or, more
@@ -47,6 +48,8 @@ pub(crate) struct FirstOrder<'g> {
     pub(crate) mass: Matrix<Expr<'g>>,
     /// The equations M w = r of a tree, if M and r are not written out.
     pub(crate) tree: Option<Rc<TreeEquations<'g>>>,
+    /// The same equations for bodies that carry one another, which are eliminated link by link.
+    pub(crate) points: Option<Rc<PointEquations<'g>>>,
     /// The function p, if it differs from M w.
     pub(crate) implicit: Option<Implicit<'g>>,
     /// r, in t and y.
@@ -74,14 +77,15 @@ pub(crate) struct Implicit<'g> {
 impl<'g> FirstOrder<'g> {
     /// The inverse M⁻¹ in the form in which it is applied.
     pub(crate) fn factors(&self) -> Factors<'g> {
-        match &self.tree {
-            Some(tree) => Factors::Tree(Rc::clone(tree)),
-            None => Factors::of(self.graph, &self.mass),
+        match (&self.tree, &self.points) {
+            (Some(tree), _) => Factors::Tree(Rc::clone(tree)),
+            (None, Some(points)) => Factors::Points(Rc::clone(points)),
+            (None, None) => Factors::of(self.graph, &self.mass),
         }
     }
 
     /// The number of operations needed to compute ẏ when it is written out.
-    fn operations(&self) -> usize {
+    pub(crate) fn operations(&self) -> usize {
         let unknowns = self.solve(&self.factors());
         let values: Vec<_> = self.unknowns.iter().copied().zip(unknowns).collect();
         let rates = self.graph.substitute(&self.rates, &values);
@@ -106,6 +110,9 @@ impl<'g> FirstOrder<'g> {
     pub(crate) fn solve(&self, factors: &Factors<'g>) -> Vec<Expr<'g>> {
         if let Some(tree) = &self.tree {
             return tree.system.in_order(&tree.dynamics.accelerations());
+        }
+        if let Some(points) = &self.points {
+            return points.accelerations();
         }
         let mut unknowns = factors.solve(self.graph, &self.right);
         let decoupled = |s: usize| self.mass.nonzero(s).all(|(r, _)| r == s);
@@ -228,6 +235,7 @@ impl<'g> Equations<'g> {
             rank: 0,
             mass,
             tree: None,
+            points: None,
             implicit: None,
             right,
             rates: self

@@ -33,7 +33,8 @@ pub struct CompileOptions {
     pub(crate) elimination: TreeElimination,
 }
 
-/// The method that solves for the accelerations of [bodies joined by joints](crate::Tree). All methods give the
+/// The method that solves for the accelerations of [bodies joined by joints](crate::Tree), and of bodies with
+/// positions that carry one another, such as the links of a chain in angles from the vertical. All methods give the
 /// same numbers up to rounding errors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TreeElimination {

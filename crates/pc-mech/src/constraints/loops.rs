@@ -15,11 +15,7 @@ impl<'g> Multipliers<'g> {
     ///
     /// # Errors
     /// As for [`with_multipliers`](crate::System::with_multipliers), which made the original equations.
-    pub(crate) fn in_graph<'n>(
-        &self,
-        tree: &TreeSystem<'g>,
-        graph: &'n Graph,
-    ) -> Result<Multipliers<'n>, MechError> {
+    pub(crate) fn in_graph<'n>(&self, graph: &'n Graph) -> Result<Multipliers<'n>, MechError> {
         let system = &self.equations.system;
         let copy = Transcription::new(system.graph(), graph);
         let put = |constraint: &Constraint<'g>| Constraint {
@@ -27,7 +23,7 @@ impl<'g> Multipliers<'g> {
             expression: copy.write(constraint.expression),
             nonlinear: constraint.nonlinear,
         };
-        let own = system.in_graph(tree, graph);
+        let own = system.in_graph(graph);
         let held = own.with_multipliers(&self.constraints.iter().map(put).collect::<Vec<_>>())?;
         Ok(Multipliers {
             followers: self.followers.iter().map(put).collect(),
@@ -48,14 +44,13 @@ impl<'g> Multipliers<'g> {
         rank: usize,
     ) -> Result<Option<Schur>, MechError> {
         let system = &self.equations.system;
-        let Some(tree) = system.tree.as_ref().filter(|_| options.elimination != TreeElimination::Whole)
-        else {
+        if system.tree.is_none() || options.elimination == TreeElimination::Whole {
             return Ok(None);
-        };
+        }
         // An empty graph: the steps that lead to the full matrix differ.
         let graph = system.graph().page(system.graph().folding());
         let copy = Transcription::new(system.graph(), &graph);
-        let own = system.in_graph(tree, &graph);
+        let own = system.in_graph(&graph);
         let Some(tree) = &own.tree else { return Ok(None) };
         let tree = TreeEquations {
             dynamics: tree.dynamics(&own.frame, &own.forces),

@@ -223,9 +223,11 @@ impl<'g> Multipliers<'g> {
     /// parameter.
     pub fn compile_for(&self, options: impl Into<CompileOptions>) -> Result<Motion, MechError> {
         let (options, graph) = (options.into(), self.graph());
-        let Some(tree) = &self.equations.system.tree else { return self.compile_here(&options) };
+        if self.equations.system.tree.is_none() {
+            return self.compile_here(&options);
+        }
         let own = graph.page(graph.folding());
-        self.in_graph(tree, &own)?.compile_here(&options)
+        self.in_graph(&own)?.compile_here(&options)
     }
 
     fn compile_here(&self, options: &CompileOptions) -> Result<Motion, MechError> {

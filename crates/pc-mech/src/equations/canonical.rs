@@ -350,6 +350,7 @@ impl<'g> Canonical<'g> {
             }
         };
         FirstOrder {
+            points: None,
             tree: None,
             graph,
             time: system.frame.time(),

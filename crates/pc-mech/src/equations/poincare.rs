@@ -94,7 +94,9 @@ impl<'g> System<'g> {
         let (momenta, slope) = gradient.split_at(all.len());
         let mut system = self.restricted(free);
         if free == all.len() {
-            system.tree.clone_from(&self.tree); // no constraint was put in
+            // No constraint was put in.
+            system.tree.clone_from(&self.tree);
+            system.bodies.others = self.bodies.others;
         }
         let eta = &system.quasi_velocities;
         let velocities = system.frame.velocities(eta);

@@ -128,7 +128,7 @@ impl<'g> SystemBuilder<'g> {
         let mut lagrangian = self.lagrangian.clone();
         lagrangian.extend(self.graph.substitute(&self.in_velocities, &velocities));
         let rest = self.graph.sum(lagrangian.iter().copied());
-        let bodies = Bodies { list: Vec::new(), rest };
+        let bodies = Bodies { list: Vec::new(), rest, others: Some(rest) };
         let mut sums = Sums { lagrangian, forces: vec![vec![Expr::ZERO; eta.len()]], bodies, tree: None };
         self.add_bodies(&moving, &mut sums)?;
         if let Some(tree) = &self.tree {
@@ -141,16 +141,21 @@ impl<'g> SystemBuilder<'g> {
     fn add_bodies(&self, moving: &Moving<'_, 'g>, sums: &mut Sums<'g>) -> Result<(), MechError> {
         for (number, body) in (1..).zip(&self.bodies) {
             let share = body.share(moving)?;
-            sums.lagrangian.extend([share.kinetic, share.force_function]);
+            let mut others = vec![share.rotational, share.force_function];
             if let Some(acceleration) = &self.gravity {
                 moving.check_at_rest("the acceleration of gravity", acceleration)?;
-                sums.lagrangian.push(body.weight(self.graph, acceleration)?);
+                others.push(body.weight(self.graph, acceleration)?);
             }
+            sums.lagrangian.push(share.kinetic);
+            sums.lagrangian.extend(&others[1..]);
+            sums.bodies.others =
+                sums.bodies.others.map(|sum| self.graph.sum(others.into_iter().chain([sum])));
             sums.forces.push(share.forces);
             let name = body.name().map_or_else(|| format!("body {number}"), str::to_owned);
             let (velocity, angular_velocity) = (share.velocity, share.angular_velocity);
             let in_lagrangian = share.in_lagrangian;
-            sums.bodies.list.push(BodyVelocity { name, velocity, angular_velocity, in_lagrangian });
+            let (mass, _) = body.mass_and_position();
+            sums.bodies.list.push(BodyVelocity { name, mass, velocity, angular_velocity, in_lagrangian });
         }
         Ok(())
     }

@@ -79,7 +79,7 @@ impl<'g> System<'g> {
             forces,
             integrals: known(&self.integrals),
             outputs: known(&self.outputs),
-            bodies: Bodies { list: Vec::new(), rest: lagrangian }, // their coordinates are left out
+            bodies: Bodies { list: Vec::new(), rest: lagrangian, others: None }, // their coordinates are left out
             tree: None,
             ..self.clone()
         })

@@ -3,6 +3,7 @@
 use pc_expr::Expr;
 
 use crate::error::{MechError, ShapeError};
+use crate::system::bodies::velocity::Bodies;
 use crate::system::system::System;
 
 impl<'g> System<'g> {
@@ -58,6 +59,7 @@ impl<'g> System<'g> {
             frame: self.frame.restricted(free),
             quasi_velocities: self.quasi_velocities[..free].to_vec(),
             forces: self.forces[..free].to_vec(),
+            bodies: Bodies { others: None, ..self.bodies.clone() },
             ..self.clone()
         };
         let zeros = graph.substitution(&zeros);

@@ -44,6 +44,7 @@ impl<'g> Motions<'_, 'g> {
             }
             velocities.push(BodyVelocity {
                 name: body.name.clone(),
+                mass: body.mass,
                 velocity: in_world.to_vec(),
                 angular_velocity: Some(apply_transpose(graph, &stand.rotation, &motion.omega).to_vec()),
                 in_lagrangian: Vec::new(),

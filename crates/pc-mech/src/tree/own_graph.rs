@@ -3,12 +3,11 @@
 use pc_expr::{Expr, Graph, Transcription};
 
 use crate::system::system::System;
-use crate::tree::system::TreeSystem;
 
 impl<'g> System<'g> {
-    /// The same system in an empty graph, with its tree `tree`: derivations there depend on the system alone,
-    /// to the last bit, whatever else the original graph contains.
-    pub(crate) fn in_graph<'n>(&self, tree: &TreeSystem<'g>, graph: &'n Graph) -> System<'n> {
+    /// The same system in an empty graph: derivations there depend on the system alone, to the last bit, whatever
+    /// else the original graph contains.
+    pub(crate) fn in_graph<'n>(&self, graph: &'n Graph) -> System<'n> {
         let copy = Transcription::new(self.graph(), graph);
         let put = |x: Expr<'g>| copy.write(x);
         let all = |list: &[Expr<'g>]| list.iter().map(|&x| put(x)).collect::<Vec<_>>();
@@ -19,7 +18,7 @@ impl<'g> System<'g> {
         all(&self.state());
         let parameters = self.parameters.iter().map(|&(symbol, value)| (put(symbol), value)).collect();
         let frame = self.frame.written_in(graph, put);
-        let tree = tree.map(graph, put);
+        let tree = self.tree.as_ref().map(|tree| Box::new(tree.map(graph, put)));
         System {
             frame,
             parameters,
@@ -29,13 +28,13 @@ impl<'g> System<'g> {
             forces: all(&self.forces),
             external: named(&self.external),
             states: self.states.iter().map(|&(z, rate)| (put(z), put(rate))).collect(),
-            lagrangian: tree.lagrangian(),
+            lagrangian: tree.as_ref().map_or_else(|| put(self.lagrangian), |tree| tree.lagrangian()),
             integrals: named(&self.integrals),
             outputs: named(&self.outputs),
             bodies: self.bodies.map(all),
             gravity: self.gravity.map(put),
             unit_quaternions: self.unit_quaternions.iter().map(|q| q.map(put)).collect(),
-            tree: Some(Box::new(tree)),
+            tree,
         }
     }
 }

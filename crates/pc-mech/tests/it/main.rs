@@ -4,6 +4,7 @@
 
 mod bodies;
 mod canonical;
+mod carried;
 mod common;
 mod constraint_manifold;
 mod derivatives;

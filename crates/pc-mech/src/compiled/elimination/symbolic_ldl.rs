@@ -6,6 +6,7 @@ use std::rc::Rc;
 use pc_algebra::{Matrix, determinant, inverse};
 use pc_expr::{Expr, Graph};
 
+use crate::points::equations::PointEquations;
 use crate::tree::articulated::Freedom;
 use crate::tree::equations::TreeEquations;
 
@@ -19,6 +20,8 @@ pub(crate) enum Factors<'g> {
     Inverse(Matrix<Expr<'g>>),
     /// Elimination joint by joint.
     Tree(Rc<TreeEquations<'g>>),
+    /// Elimination link by link.
+    Points(Rc<PointEquations<'g>>),
 }
 
 /// The maximum number of rows of an indefinite matrix that is inverted as a whole; larger inverses are long
@@ -88,6 +91,10 @@ impl<'g> Factors<'g> {
                 };
                 freedoms.filter_map(watched).collect()
             }
+            Factors::Points(points) => {
+                let pivots = points.elimination.pivots();
+                pivots.map(|(place, pivot, size)| Watched { place, pivot, size }).collect()
+            }
         }
     }
 
@@ -97,6 +104,7 @@ impl<'g> Factors<'g> {
             Factors::Ldl(ldl) => ldl.diagonal.len(),
             Factors::Inverse(inverse) => inverse.rows(),
             Factors::Tree(tree) => tree.system.places.iter().map(Vec::len).sum(),
+            Factors::Points(points) => points.elimination.size(),
         }
     }
 
@@ -111,6 +119,7 @@ impl<'g> Factors<'g> {
                 let applied = tree.system.by_link(right);
                 tree.system.in_order(&tree.dynamics.articulated.solve(vec![None; applied.len()], &applied))
             }
+            Factors::Points(points) => points.elimination.solve(None, right),
         }
     }
 
@@ -119,7 +128,7 @@ impl<'g> Factors<'g> {
         match self {
             _ if right.is_empty() => Vec::new(),
             Factors::Ldl(ldl) => ldl.solve_nonzero(graph, right),
-            Factors::Inverse(_) | Factors::Tree(_) => {
+            Factors::Inverse(_) | Factors::Tree(_) | Factors::Points(_) => {
                 let mut whole = vec![Expr::ZERO; self.rows()];
                 right.iter().for_each(|&(i, entry)| whole[i] = entry);
                 let solution = self.solve(graph, &whole).into_iter().enumerate();

@@ -32,12 +32,16 @@ impl<'g> Body<'g> {
     /// # Errors
     /// [`ShapeError`](crate::ShapeError)
     pub(crate) fn weight(&self, graph: &'g Graph, acceleration: &[Expr<'g>]) -> Result<Expr<'g>, MechError> {
-        let (mass, position) = match self {
-            Body::Particle(particle) => particle.mass_and_position(),
-            Body::Rigid(body) => body.mass_and_position(),
-        };
+        let (mass, position) = self.mass_and_position();
         shape("the acceleration of gravity", acceleration.len(), position.len())?;
         Ok(mass * graph.dot(acceleration.iter().copied(), position.iter().copied()))
+    }
+
+    pub(crate) fn mass_and_position(&self) -> (Expr<'g>, &[Expr<'g>]) {
+        match self {
+            Body::Particle(particle) => particle.mass_and_position(),
+            Body::Rigid(body) => body.mass_and_position(),
+        }
     }
 
     /// The name that the body was given.

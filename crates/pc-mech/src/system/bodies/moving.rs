@@ -17,6 +17,8 @@ pub(crate) struct Share<'g> {
     pub(crate) force_function: Expr<'g>,
     /// For each component of the force, whether it is included in U.
     pub(crate) in_lagrangian: Vec<bool>,
+    /// The part of T that is due to ω.
+    pub(crate) rotational: Expr<'g>,
     /// ṙ
     pub(crate) velocity: Vec<Expr<'g>>,
     /// The angular velocity ω, if the body turns.

@@ -102,7 +102,8 @@ impl<'g> Particle<'g> {
                 }
             }
         }
-        Ok(Share { kinetic, forces, force_function, in_lagrangian, velocity, angular_velocity: None })
+        let (rotational, angular_velocity) = (Expr::ZERO, None);
+        Ok(Share { kinetic, forces, force_function, in_lagrangian, rotational, velocity, angular_velocity })
     }
 
     /// The U(t, x) for which F · X_s r = X_s U, if the force depends on the position alone and such a U is

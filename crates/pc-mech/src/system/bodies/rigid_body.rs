@@ -177,7 +177,7 @@ impl<'g> RigidBody<'g> {
             }
         }
         let (kinetic, angular_velocity) = (kinetic + rotational, Some(omega));
-        Ok(Share { kinetic, forces, force_function, in_lagrangian, velocity, angular_velocity })
+        Ok(Share { kinetic, forces, force_function, in_lagrangian, rotational, velocity, angular_velocity })
     }
 }
 

@@ -6,6 +6,7 @@ use pc_expr::Expr;
 #[derive(Clone, Debug)]
 pub struct BodyVelocity<'g> {
     pub(crate) name: String,
+    pub(crate) mass: Expr<'g>,
     pub(crate) velocity: Vec<Expr<'g>>,
     pub(crate) angular_velocity: Option<Vec<Expr<'g>>>,
     /// For each component of its force, whether its force function is a term of L.
@@ -41,6 +42,9 @@ pub(crate) struct Bodies<'g> {
     pub(crate) list: Vec<BodyVelocity<'g>>,
     /// The Lagrangian L without the kinetic energy of the bodies.
     pub(crate) rest: Expr<'g>,
+    /// L without Σ m ṙ²/2, the part of that energy that is due to the motion of their points; none where the
+    /// equations do not follow from L.
+    pub(crate) others: Option<Expr<'g>>,
 }
 
 impl<'g> Bodies<'g> {
@@ -48,10 +52,13 @@ impl<'g> Bodies<'g> {
     pub(crate) fn map<'n>(&self, put: impl Fn(&[Expr<'g>]) -> Vec<Expr<'n>>) -> Bodies<'n> {
         let moved = |body: &BodyVelocity<'g>| BodyVelocity {
             name: body.name.clone(),
+            mass: put(&[body.mass])[0],
             velocity: put(&body.velocity),
             angular_velocity: body.angular_velocity.as_deref().map(&put),
             in_lagrangian: body.in_lagrangian.clone(),
         };
-        Bodies { list: self.list.iter().map(moved).collect(), rest: put(&[self.rest])[0] }
+        let one = |x: Expr<'g>| put(&[x])[0];
+        let (rest, others) = (one(self.rest), self.others.map(one));
+        Bodies { list: self.list.iter().map(moved).collect(), rest, others }
     }
 }
