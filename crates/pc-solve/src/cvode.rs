@@ -22,7 +22,6 @@ pub(crate) mod integration;
 pub(crate) mod interpolation;
 pub(crate) mod linear;
 mod operations;
-mod pace;
 pub(crate) mod projection;
 pub(crate) mod quadrature;
 pub(crate) mod quadrature_callbacks;

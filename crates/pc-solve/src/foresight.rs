@@ -12,7 +12,6 @@
 //! the step. `scatter` detects noise: a function that varies faster than floating-point times can
 //! resolve is an error, unless the variation is below the tolerances.
 
-mod calm;
 pub(crate) mod places;
 pub(crate) mod scatter;
 

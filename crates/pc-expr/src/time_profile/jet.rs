@@ -13,9 +13,6 @@ pub(crate) struct Jet {
 }
 
 impl Jet {
-    /// A function of which nothing is known.
-    pub(crate) const ANYTHING: Jet = Jet { value: Interval::ALL, rate: Interval::ALL, bend: Interval::ALL };
-
     pub(crate) fn constant(x: f64) -> Jet {
         Jet::line(Interval::point(x), 0.0)
     }
@@ -32,9 +29,6 @@ impl Jet {
 
     /// F(u) with F, F′ and F″ over the values of u.
     fn chain(self, f: Interval, first: Interval, second: Interval) -> Jet {
-        if self.rate == Interval::ALL {
-            return Jet::rough(f);
-        }
         Jet { value: f, rate: first * self.rate, bend: second * self.rate.square() + first * self.bend }
     }
 
@@ -47,13 +41,8 @@ impl Jet {
     }
 
     fn multiply(self, other: Jet) -> Jet {
-        let value = self.value * other.value;
-        let is_rough = |a: Jet, b: Jet| a.rate == Interval::ALL && b.value != Interval::ZERO;
-        if is_rough(self, other) || is_rough(other, self) {
-            return Jet::rough(value);
-        }
         Jet {
-            value,
+            value: self.value * other.value,
             rate: self.rate * other.value + self.value * other.rate,
             bend: self.bend * other.value + (self.rate * other.rate).scale(2.0) + self.value * other.bend,
         }

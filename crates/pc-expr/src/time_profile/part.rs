@@ -196,11 +196,6 @@ impl Part {
         self.states.iter().all(|&i| i < dim)
     }
 
-    /// The components of the state that are read.
-    pub(crate) fn components(&self) -> &[usize] {
-        &self.states
-    }
-
     pub(crate) fn is_empty(&self) -> bool {
         self.watched.is_empty()
     }
@@ -217,20 +212,6 @@ impl Part {
         for &i in self.states.iter().filter(|i| self.needed[self.time + 1 + **i]) {
             self.registers[self.time + 1 + i] = motion.component((i, dim), near, &mut self.local);
         }
-        self.run();
-    }
-
-    /// Encloses the part over all motions that stay within a radius of the centre of each of these components.
-    pub(crate) fn enclose_near(&mut self, components: &[usize], centres: &[f64], radii: &[f64]) {
-        self.registers[self.time] = Jet::ANYTHING;
-        for ((i, centre), radius) in components.iter().zip(centres).zip(radii) {
-            let value = Interval { lo: centre - radius, hi: centre + radius };
-            self.registers[self.time + 1 + i] = Jet { value, ..Jet::ANYTHING };
-        }
-        self.run();
-    }
-
-    fn run(&mut self) {
         for (place, instruction) in self.code.iter().filter(|(place, _)| self.needed[*place]) {
             self.registers[*place] = Jet::of(instruction, |register| self.registers[register.index()]);
         }

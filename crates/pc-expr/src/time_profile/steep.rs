@@ -46,9 +46,7 @@ impl Kind {
 
     /// Whether a function hides nothing if its jet is the given one, and registers are those of `part`.
     fn is_quiet(self, jet: &Jet, part: &Part) -> bool {
-        // Far from a peak there is nothing left of it, or its reciprocal is infinite.
-        let keeps_size =
-            |Interval { lo, hi }| lo == hi || lo > 0.0 && hi < FACTOR * lo || hi < 0.0 && lo > FACTOR * hi;
+        let keeps_size = |Interval { lo, hi }| lo > 0.0 && hi < FACTOR * lo || hi < 0.0 && lo > FACTOR * hi;
         match self {
             Kind::Exponential => keeps_size(jet.value) || jet.rate.sign().is_some(),
             Kind::Reciprocal { divisor, least } => {
@@ -128,22 +126,6 @@ impl SteepFunctions {
         (!self.parts.is_empty()).then_some(self)
     }
 
-    /// The components of the state on which the functions depend.
-    pub fn components(&self) -> Vec<usize> {
-        let mut components: Vec<usize> =
-            self.parts.iter().flat_map(|followed| followed.watched.part.components()).copied().collect();
-        components.sort_unstable();
-        components.dedup();
-        components
-    }
-
-    /// Whether none of the functions hides anything, however the motion goes, as long as each of the
-    /// [components](SteepFunctions::components) on which they depend stays within a radius of its centre.
-    pub fn are_calm_near(&mut self, centres: &[f64], radii: &[f64]) -> bool {
-        let components = self.components();
-        self.parts.iter_mut().all(|followed| followed.is_calm_near(&components, centres, radii))
-    }
-
     /// Whether one of the functions may hide something between two times along the motion: a first look,
     /// coarser than [`surprises`](SteepFunctions::surprises).
     pub fn hide(&mut self, (t, to): (f64, f64), motion: PolynomialMotion<'_>) -> bool {
@@ -220,24 +202,6 @@ impl Followed {
         self.loud.fill(true);
         part.attend_to(&self.loud);
         part.enclose(between, along);
-        self.judge()
-    }
-
-    /// Whether none of the functions hides anything along motions that stay near a state.
-    fn is_calm_near(&mut self, components: &[usize], centres: &[f64], radii: &[f64]) -> bool {
-        if self.kinds.contains(&Kind::Moving) {
-            return false;
-        }
-        let part = &mut self.watched.part;
-        self.loud.fill(true);
-        part.attend_to(&self.loud);
-        part.enclose_near(components, centres, radii);
-        self.judge()
-    }
-
-    /// Whether none of the functions hides anything where they were last enclosed; notes those that may.
-    fn judge(&mut self) -> bool {
-        let part = &self.watched.part;
         for ((loud, jet), kind) in self.loud.iter_mut().zip(part.jets()).zip(&self.kinds) {
             *loud = !kind.is_quiet(&jet, part);
         }
@@ -315,7 +279,8 @@ fn kind(instruction: &Instruction, ranges: &[Interval]) -> Option<Kind> {
 
 /// The values of each register over all times and states.
 fn ranges(program: &Program, parameters: &[f64]) -> Vec<Interval> {
-    let mut registers = vec![Jet::ANYTHING; program.registers_len()];
+    let anything = Jet { value: Interval::ALL, rate: Interval::ALL, bend: Interval::ALL };
+    let mut registers = vec![anything; program.registers_len()];
     for (register, &value) in registers.iter_mut().zip(program.constants()) {
         *register = Jet::constant(value);
     }

@@ -80,9 +80,6 @@ fn choose<'a>(
 ) {
     let direction = if to < t { -1.0 } else { 1.0 };
     let inside = features.filter(|feature| (feature.t - to) * direction < 0.0);
-    if inside.clone().next().is_none() {
-        return;
-    }
     seen.clear();
     seen.resize(part.watched.len(), Seen::default());
     for feature in inside.clone() {

@@ -27,15 +27,11 @@ impl<F: VectorField> Cvode<F> {
     /// The time at which the next step towards `towards` has to end so as not to miss a feature of
     /// the field; none if the step would miss nothing.
     pub(super) fn foresee(&mut self, towards: f64) -> Result<Option<f64>, SolveError> {
-        let (t, state) = (self.step_time, self.step_state.as_slice());
         let Some(mut places) = self.foresight.places.take_if(|places| !places.are_absent()) else {
             return Ok(None);
         };
-        if places.follow_states() {
-            self.foresight.pace.arrive(t, state);
-        }
         let ahead = Ahead {
-            t,
+            t: self.step_time,
             reach: self.planned_end(towards),
             end: self.stop_time.unwrap_or(towards),
             given: self.direction.is_none() && self.initial_step.is_some(),
@@ -139,10 +135,6 @@ impl<F: VectorField> Here for Cvode<F> {
     fn prediction(&mut self) -> Result<Option<PolynomialMotion<'_>>, SolveError> {
         self.read_polynomial()?;
         Ok(Some(PolynomialMotion { start: self.step_time, coefficients: &self.foresight.polynomial }))
-    }
-
-    fn range(&self, i: usize, length: f64) -> Option<(f64, f64)> {
-        self.foresight.pace.range(i, length)
     }
 
     fn resolve(&mut self, near: f64, length: f64) -> Result<(), SolveError> {

@@ -2,7 +2,6 @@
 
 use pc_expr::VectorField;
 
-use crate::cvode::pace::Pace;
 use crate::foresight::places::Places;
 use crate::settings::options::Options;
 use crate::settings::tolerance::Tolerance;
@@ -24,8 +23,6 @@ pub(super) struct Foresight {
     pub(super) state: Vec<f64>,
     pub(super) slope: Vec<f64>,
     pub(super) rates: Vec<f64>,
-    /// How fast the last steps have moved.
-    pub(super) pace: Pace,
     /// The local errors of the last step, its length and order.
     pub(super) errors: Vec<f64>,
     pub(super) last_step: f64,
@@ -46,7 +43,6 @@ impl Foresight {
             state: vec![0.0; dim],
             slope: vec![0.0; dim],
             rates: vec![0.0; dim],
-            pace: Pace::new(dim),
             errors: vec![0.0; dim],
             last_step: 0.0,
             order: 0,
@@ -56,7 +52,6 @@ impl Foresight {
     /// Resets the counts, for a restart.
     pub(super) fn restart(&mut self) {
         self.evaluations = 0;
-        self.pace.forget();
         if let Some(places) = &mut self.places {
             places.restart();
         }

@@ -65,14 +65,6 @@ impl<F: VectorField> Dop853<F> {
     fn hides_along_cubic(&mut self) -> bool {
         let Dop853 { field, end, trial, places, coefficients, .. } = self;
         let (dim, h) = (field.dim(), trial.t - end.t);
-        // The cubic is a mean of both states plus the rates, times h and at most 4/27.
-        let range = |i: usize| {
-            let rates = end.rates[i].abs() + trial.rates[i].abs();
-            (end.y[i], (trial.y[i] - end.y[i]).abs() + 4.0 / 27.0 * h.abs() * rates)
-        };
-        if places.are_calm(|i| Some(range(i))) {
-            return false;
-        }
         coefficients.clear();
         coefficients.extend_from_slice(&end.y[..dim]);
         coefficients.extend_from_slice(&end.rates[..dim]);

@@ -3,7 +3,6 @@
 use pc_expr::{PolynomialMotion, SteepFunctions, Surprises, TimeDependence, VectorField};
 
 use crate::error::SolveError;
-use crate::foresight::calm::Calm;
 
 /// The number of times, from start to end, at which a field with unknown time dependence is
 /// examined.
@@ -41,7 +40,6 @@ pub(crate) struct Places {
     dependence: TimeDependence,
     /// The functions of the state whose features a step may miss.
     steep: Option<SteepFunctions>,
-    calm: Option<Calm>,
     /// The start of the integration.
     begin: f64,
     /// The minimum step, or 0.
@@ -72,12 +70,6 @@ pub(crate) trait Here {
     /// [`SolveError`] if the method fails.
     fn prediction(&mut self) -> Result<Option<PolynomialMotion<'_>>, SolveError>;
 
-    /// A range that component `i` of the state does not leave in the step ahead, of this length: its
-    /// middle and radius. None if only the [prediction](Here::prediction) shows one.
-    fn range(&self, _i: usize, _length: f64) -> Option<(f64, f64)> {
-        None
-    }
-
     /// Checks that f is not mere noise between the start of the step and the time `near`.
     ///
     /// # Errors
@@ -90,11 +82,9 @@ impl Places {
     pub(crate) fn new(field: &mut impl VectorField, t0: f64, min_step: Option<f64>) -> Places {
         // Where f is held, it does not jump.
         let held = field.held_time_dependence();
-        let steep = field.steep_functions();
         Places {
             dependence: held.unwrap_or_else(|| field.time_dependence()),
-            calm: steep.as_ref().map(Calm::of),
-            steep,
+            steep: field.steep_functions(),
             begin: t0,
             min_step: min_step.unwrap_or(0.0),
             unsurprising: 0,
@@ -159,8 +149,7 @@ impl Places {
             self.many.clear();
             here.resolve(near, ahead.length())?;
         }
-        if !self.are_calm(|i| here.range(i, ahead.length()))
-            && self.steep.is_some()
+        if self.steep.is_some()
             && let Some(motion) = here.prediction()?
         {
             until = nearer(t, until, self.follow((t, reach), motion));
@@ -185,13 +174,6 @@ impl Places {
             return Ok(false);
         }
         Ok(true)
-    }
-
-    /// Whether steep functions of the state hide nothing along a motion whose components stay in these
-    /// ranges; false if that is not known.
-    pub(crate) fn are_calm(&mut self, range: impl FnMut(usize) -> Option<(f64, f64)>) -> bool {
-        let Some((steep, calm)) = self.steep.as_mut().zip(self.calm.as_mut()) else { return false };
-        calm.covers(steep, range)
     }
 
     /// Whether steep functions of the state may hide a feature along the motion in a step that has
