@@ -33,7 +33,7 @@ impl Ensemble<'_> {
     ///
     /// Lanes are used with [`Method::Auto`](crate::Method::Auto) and
     /// [`Method::Dop853`](crate::Method::Dop853), for fields that do not read time, without
-    /// inequalities, a minimum step or a stop time. `begin` must not offer lanes a field with
+    /// inequalities, a minimum step or a stop time before the last output. `begin` must not offer lanes a field with
     /// events or breaks. Lanes use the method of [`Dop853`](crate::Dop853), but with fused
     /// multiply-adds, so that the last digits differ. With `Auto` a member that turns out to be
     /// stiff is integrated `alone`; `Dop853` does not look for stiffness here. Each lane performs

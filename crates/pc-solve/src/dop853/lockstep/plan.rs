@@ -29,18 +29,22 @@ pub(crate) struct Plan {
 
 impl Plan {
     /// The plan; none if the input is invalid, which each member then reports by itself, or if
-    /// lanes do not support it because of the method, inequalities, a minimum step or a stop time.
+    /// lanes do not support it because of the method, inequalities, a minimum step or a stop time before the last
+    /// output.
     pub(crate) fn new(start: f64, times: &[f64], options: &Options) -> Option<Plan> {
         let more = !matches!(options.method, Method::Auto | Method::Dop853)
             || !options.inequalities.is_empty()
-            || options.min_step.is_some()
-            || options.stop_time.is_some();
+            || options.min_step.is_some();
         let &end = times.last()?;
         let finite = start.is_finite() && times.iter().all(|t| t.is_finite());
         if more || !finite || end == start {
             return None;
         }
         let direction = 1.0_f64.copysign(end - start);
+        // The last step ends at the last output.
+        if options.stop_time.is_some_and(|stop| (stop - end) * direction < 0.0) {
+            return None;
+        }
         let ahead = (times[0] - start) * direction >= 0.0;
         let monotonic = times.windows(2).all(|pair| (pair[1] - pair[0]) * direction > 0.0);
         // The times of lanes are not counted from the start: they would lose digits.
