@@ -131,6 +131,21 @@ fn lanes_agree_with_single_motions_within_the_tolerance() {
     }
 }
 
+/// The last step ends at the last output anyway.
+#[test]
+fn a_stop_time_from_the_last_output_on_changes_no_bit() {
+    let program = pendulum();
+    let make = |member| swinging(&program, member);
+    for (t0, times) in [(0.0, [1.0, 3.5, 10.0]), (1.0, [0.1, -0.9, -3.0])] {
+        let motions = |options: &Options| motions(&ensemble(1, 8), 20, make, (t0, &times), options);
+        let free = bits(&motions(&options(1e-9)));
+        for beyond in [0.0, 0.5] {
+            let stop = times[2] + beyond * (times[2] - t0);
+            assert_eq!(bits(&motions(&options(1e-9).stop_time(stop))), free, "to {stop}");
+        }
+    }
+}
+
 /// ÿ = −y: the error falls with the tolerance as a power, inside steps too.
 #[test]
 fn states_inside_steps_lie_on_the_motion() {
