@@ -44,6 +44,30 @@ pub enum TreeError {
         /// The number that the joint needs.
         expected: usize,
     },
+    /// A joint that follows one that does not exist.
+    #[error("the joint of `{body}` follows that of `{followed}`, but there is no body of that name")]
+    NoFollowed {
+        /// The body.
+        body: String,
+        /// The name that is not found.
+        followed: String,
+    },
+    /// A joint that follows another, where one of the two has not exactly one coordinate.
+    #[error(
+        "the joint of `{body}` cannot follow that of `{followed}`: both must have exactly one coordinate"
+    )]
+    NotSingle {
+        /// The body.
+        body: String,
+        /// The body whose joint is followed.
+        followed: String,
+    },
+    /// Joints that follow each other in a circle.
+    #[error("joints follow each other in a circle: {}", bodies.join(", "))]
+    FollowedCircle {
+        /// The names of the bodies, each before the one that it follows.
+        bodies: Vec<String>,
+    },
     /// A property of a body that is not constant.
     #[error("the {what} of `{body}` is constant; here it depends on `{symbol}`")]
     NotConstant {

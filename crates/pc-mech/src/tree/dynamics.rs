@@ -16,7 +16,7 @@
 
 use pc_expr::{Expr, Graph};
 
-use crate::tree::articulated::{Articulated, Eliminated, Spatial, force_seen, joined};
+use crate::tree::articulated::{Articulated, Spatial, force_seen, joined};
 use crate::tree::link::Link;
 use crate::tree::spatial::{Tensor, Vector, ZERO, cross, tensor, vector};
 use crate::tree::tree::{MassOnLink, Tree};
@@ -151,11 +151,11 @@ impl<'g> TreeDynamics<'g> {
     /// for the solution.
     pub(crate) fn balance(&self, unknowns: &[Vec<Expr<'g>>]) -> Vec<Vec<Expr<'g>>> {
         let forces = self.forces_on_joints(unknowns, &vec![[Expr::ZERO; 6]; self.links.len()]);
-        let left = |(i, link): (usize, &Eliminated<'g>)| {
-            let applied = link.freedoms.iter().zip(&self.applied[i]);
-            applied.map(|(freedom, &applied)| applied - freedom.along(&forces[i])).collect()
+        let left = |(i, applied): (usize, &Vec<Expr<'g>>)| {
+            let needed = self.articulated.along(i, &forces);
+            applied.iter().zip(needed).map(|(&applied, needed)| applied - needed).collect()
         };
-        self.articulated.links.iter().enumerate().map(left).collect()
+        self.applied.iter().enumerate().map(left).collect()
     }
 
     /// The accelerations of the links for these η̇, or, without η̇, in the reference motion, where the free
@@ -179,12 +179,16 @@ impl<'g> TreeDynamics<'g> {
                 &vector(|c| graph.keep(alpha[c] + gained[c])),
                 &vector(|c| graph.keep(a[c] + coriolis[c])),
             );
-            let mut left_out = vec![Expr::ZERO; known.freedoms.len()];
+            let mut left_out = vec![Expr::ZERO; link.quasi_velocities().len()];
             for (j, freedom) in known.freedoms.iter().enumerate() {
                 match unknowns {
                     Some(unknowns) => freedom.accelerate(graph, &mut total, unknowns[i][j]),
                     None => left_out[j] = freedom.leave_out(&mut total),
                 }
+            }
+            if let (Some(moved), Some(unknowns)) = (&known.moved, unknowns) {
+                let shared = self.articulated.shared_by(i, unknowns).unwrap_or(Expr::ZERO);
+                moved.accelerate(graph, &mut total, shared);
             }
             dropped.push(left_out);
             let (alpha, a) = (vector(|c| total[c]), vector(|c| total[c + 3]));

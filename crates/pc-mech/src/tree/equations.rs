@@ -19,10 +19,9 @@ impl TreeEquations<'_> {
     /// # Errors
     /// [`LagrangianError::Degenerate`] with the quasi-velocities that no inertia resists.
     pub(crate) fn check_regular(&self, names: &[String]) -> Result<(), LagrangianError> {
-        let links = self.system.places.iter().zip(&self.dynamics.articulated.links);
-        let freedoms = links.flat_map(|(places, link)| places.iter().zip(&link.freedoms));
-        let massless = freedoms.filter(|(_, freedom)| freedom.is_massless).map(|(&place, _)| place);
-        let massless: BTreeSet<usize> = massless.collect();
+        let pivots = self.dynamics.articulated.pivots().filter(|pivot| pivot.is_massless);
+        let massless: BTreeSet<usize> =
+            pivots.map(|pivot| self.system.places[pivot.link][pivot.component]).collect();
         if massless.is_empty() {
             return Ok(());
         }

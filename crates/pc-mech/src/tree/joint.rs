@@ -30,6 +30,16 @@ pub struct Joint<'g> {
     pub(crate) rotation: Tensor<'g>,
     /// Names of coordinates and quasi-velocities, if they differ from the default ones.
     pub(crate) names: Option<(Vec<String>, Vec<String>)>,
+    /// The joint whose movement this one repeats.
+    pub(crate) follows: Option<Follows<'g>>,
+}
+
+/// How a joint with one coordinate moves with that of another body: x = ratio · x of the other + offset.
+#[derive(Clone, Debug)]
+pub(crate) struct Follows<'g> {
+    pub(crate) body: String,
+    pub(crate) ratio: Expr<'g>,
+    pub(crate) offset: Expr<'g>,
 }
 
 #[derive(Clone, Debug)]
@@ -47,7 +57,7 @@ pub(crate) enum Kind<'g> {
 
 impl<'g> Joint<'g> {
     fn of(kind: Kind<'g>) -> Joint<'g> {
-        Joint { kind, place: ZERO, rotation: unit(), names: None }
+        Joint { kind, place: ZERO, rotation: unit(), names: None, follows: None }
     }
 
     /// A joint that holds the body fixed.
@@ -129,9 +139,29 @@ impl<'g> Joint<'g> {
         Joint { names: Some(list), ..self }
     }
 
+    /// The same joint, revolute, prismatic or screw, geared to such a joint of another body: its coordinate is
+    /// `ratio` times that of the other plus `offset`, its velocity `ratio` times that of the other. It has no
+    /// coordinate or quasi-velocity of its own.
+    #[must_use]
+    pub fn following(
+        self,
+        body: impl Into<String>,
+        ratio: impl Into<Expr<'g>>,
+        offset: impl Into<Expr<'g>>,
+    ) -> Joint<'g> {
+        let follows = Follows { body: body.into(), ratio: ratio.into(), offset: offset.into() };
+        Joint { follows: Some(follows), ..self }
+    }
+
     /// The joint with each expression replaced.
     pub(crate) fn map<'n>(&self, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> Joint<'n> {
+        let follows = self.follows.as_ref().map(|Follows { body, ratio, offset }| Follows {
+            body: body.clone(),
+            ratio: put(*ratio),
+            offset: put(*offset),
+        });
         Joint {
+            follows,
             kind: self.kind.map(put),
             place: self.place.map(put),
             rotation: self.rotation.map(|row| row.map(put)),
@@ -141,13 +171,22 @@ impl<'g> Joint<'g> {
 
     /// The names of the coordinates and quasi-velocities of the joint, for a body with the given name.
     pub(crate) fn names_for(&self, body: &str) -> (Vec<String>, Vec<String>) {
-        self.names.clone().unwrap_or_else(|| self.kind.names(body))
+        let own = || match self.follows {
+            Some(_) => (Vec::new(), Vec::new()),
+            None => self.kind.names(body),
+        };
+        self.names.clone().unwrap_or_else(own)
     }
 }
 
 const QUATERNION: [&str; 4] = ["q0", "q1", "q2", "q3"];
 
 impl<'g> Kind<'g> {
+    /// Whether the joint has exactly one coordinate.
+    pub(crate) fn is_single(&self) -> bool {
+        matches!(self, Kind::Revolute(_) | Kind::Prismatic(_) | Kind::Screw(..))
+    }
+
     fn map<'n>(&self, put: impl Fn(Expr<'g>) -> Expr<'n>) -> Kind<'n> {
         match *self {
             Kind::Fixed => Kind::Fixed,

@@ -94,14 +94,15 @@ pub struct JointMotion<'g> {
     pub angular_velocity: [Expr<'g>; 3],
     /// The velocity of the origin of the body relative to its parent, along the axes of the body.
     pub velocity: [Expr<'g>; 3],
-    /// The quasi-velocities of the joint.
+    /// The quasi-velocities of the joint; none for a joint that follows another.
     pub quasi_velocities: Vec<Expr<'g>>,
 }
 
 impl<'g> Tree<'g> {
     /// The velocities ẋ in terms of η (3).
     pub fn velocities(&self) -> Vec<Expr<'g>> {
-        self.declared().flat_map(|link| rates(self.graph, &self.links[link].hinge)).collect()
+        let own = |link: &usize| self.links[*link].follows.is_none();
+        self.declared().filter(own).flat_map(|link| rates(self.graph, &self.links[link].hinge)).collect()
     }
 
     /// The motions of all bodies, as expressions in x and η.
@@ -130,7 +131,7 @@ impl<'g> Tree<'g> {
             place: apply_transpose(graph, &parent.rotation, &from_parent),
             angular_velocity: apply_transpose(graph, &stand.rotation, &moved.omega),
             velocity: apply_transpose(graph, &stand.rotation, &moved.velocity),
-            quasi_velocities: links.iter().flat_map(|link| link.hinge.quasi_velocities()).collect(),
+            quasi_velocities: links.iter().flat_map(Link::quasi_velocities).collect(),
         })
     }
 }

@@ -14,9 +14,13 @@ pub(crate) struct Link<'g> {
     pub(crate) place: Vector<'g>,
     pub(crate) rotation: Tensor<'g>,
     pub(crate) hinge: Hinge<'g>,
+    /// The link whose quasi-velocity moves this one, and the ratio of the velocities, for a link that has
+    /// none of its own.
+    pub(crate) follows: Option<(usize, Expr<'g>)>,
 }
 
-/// The movement of a link. An axis is the index of a coordinate axis; the symbols are x, then η.
+/// The movement of a link. An axis is the index of a coordinate axis; what moves it is x, then η, or multiples of
+/// those of another link.
 #[derive(Clone, Debug)]
 pub(crate) enum Hinge<'g> {
     /// Turns about an axis, and advances along it by `pitch` times the angle.
@@ -54,12 +58,23 @@ impl<'g> Link<'g> {
             place: self.place.map(put),
             rotation: self.rotation.map(|row| row.map(put)),
             hinge: self.hinge.map(put),
+            follows: self.follows.map(|(link, ratio)| (link, put(ratio))),
         }
+    }
+
+    /// Its own coordinates.
+    pub(crate) fn coordinates(&self) -> Vec<Expr<'g>> {
+        if self.follows.is_some() { Vec::new() } else { self.hinge.coordinates() }
+    }
+
+    /// Its own quasi-velocities.
+    pub(crate) fn quasi_velocities(&self) -> Vec<Expr<'g>> {
+        if self.follows.is_some() { Vec::new() } else { self.hinge.quasi_velocities() }
     }
 }
 
 impl<'g> Hinge<'g> {
-    pub(crate) fn coordinates(&self) -> Vec<Expr<'g>> {
+    fn coordinates(&self) -> Vec<Expr<'g>> {
         match self {
             Hinge::Turn { angle, .. } => vec![*angle],
             Hinge::Slide { way, .. } => vec![*way],
@@ -89,7 +104,7 @@ impl<'g> Hinge<'g> {
         }
     }
 
-    pub(crate) fn quasi_velocities(&self) -> Vec<Expr<'g>> {
+    fn quasi_velocities(&self) -> Vec<Expr<'g>> {
         match self {
             Hinge::Turn { rate, .. } | Hinge::Slide { rate, .. } => vec![*rate],
             Hinge::Ball { omega, .. } => omega.to_vec(),

@@ -17,7 +17,7 @@ pub(crate) struct TreeSystem<'g> {
     pub(crate) gravity: Vector<'g>,
     /// U(t, x)
     pub(crate) others: Expr<'g>,
-    /// The quasi-velocities of each link, by their indices in the system.
+    /// The own quasi-velocities of each link, by their indices in the system.
     pub(crate) places: Vec<Vec<usize>>,
 }
 
@@ -33,9 +33,8 @@ impl<'g> TreeSystem<'g> {
         eta: &[Expr<'g>],
     ) -> Option<TreeSystem<'g>> {
         let place = |symbol: &Expr<'g>| eta.iter().position(|eta| eta == symbol);
-        let of_link = |link: &Link<'g>| -> Option<Vec<usize>> {
-            link.hinge.quasi_velocities().iter().map(place).collect()
-        };
+        let of_link =
+            |link: &Link<'g>| -> Option<Vec<usize>> { link.quasi_velocities().iter().map(place).collect() };
         let places: Vec<Vec<usize>> = tree.links.iter().map(of_link).collect::<Option<_>>()?;
         let moved: usize = places.iter().map(Vec::len).sum();
         if moved != eta.len() || eta.iter().any(|&eta| others.depends_on(eta)) {
@@ -125,6 +124,8 @@ impl<'g> Tree<'g> {
                 ("inertia", body.inertia.matrix().entries().to_vec()),
                 ("place of the joint", body.joint.place.to_vec()),
                 ("rotation of the joint", body.joint.rotation.concat()),
+                ("ratio of the joint", body.joint.follows.iter().map(|follows| follows.ratio).collect()),
+                ("offset of the joint", body.joint.follows.iter().map(|follows| follows.offset).collect()),
             ];
             for (what, parts) in parts {
                 let known = self.graph.symbols_of(&parts);

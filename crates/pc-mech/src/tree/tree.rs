@@ -92,6 +92,11 @@ impl<'g> Tree<'g> {
             stands[body] = tree.hang(body, parent.map_or(world, |parent| stands[parent]))?;
             own[body] = first..tree.links.len();
         }
+        for body in 0..tree.bodies.len() {
+            if let Some(followed) = tree.followed(body)? {
+                tree.links[own[body].start].follows = Some((own[followed.body].start, followed.ratio));
+            }
+        }
         tree.own = own;
         tree.stands = stands;
         Ok(tree)
@@ -99,12 +104,12 @@ impl<'g> Tree<'g> {
 
     /// The coordinates x, joint by joint.
     pub fn coordinates(&self) -> Vec<Expr<'g>> {
-        self.declared().flat_map(|link| self.links[link].hinge.coordinates()).collect()
+        self.declared().flat_map(|link| self.links[link].coordinates()).collect()
     }
 
     /// The quasi-velocities η, joint by joint.
     pub fn quasi_velocities(&self) -> Vec<Expr<'g>> {
-        self.declared().flat_map(|link| self.links[link].hinge.quasi_velocities()).collect()
+        self.declared().flat_map(|link| self.links[link].quasi_velocities()).collect()
     }
 
     /// The quaternions of the joints that have one; each quaternion has |q| = 1.
@@ -121,10 +126,10 @@ impl<'g> Tree<'g> {
         &self.bodies
     }
 
-    /// The coordinates of the joint of a body; none for an unknown body.
+    /// The coordinates of the joint of a body; none for an unknown body, or a joint that follows another.
     pub fn joint_coordinates(&self, body: &str) -> Vec<Expr<'g>> {
         let links = self.place_of(body).map_or(0..0, |body| self.own[body].clone());
-        self.links[links].iter().flat_map(|link| link.hinge.coordinates()).collect()
+        self.links[links].iter().flat_map(Link::coordinates).collect()
     }
 
     /// The index of a body in the order of declaration.
@@ -141,9 +146,8 @@ impl<'g> Tree<'g> {
     fn hang(&mut self, body: usize, parent: Stand<'g>) -> Result<Stand<'g>, MechError> {
         let graph = self.graph;
         let TreeBody { name, joint: Joint { kind, place, rotation, .. }, .. } = &self.bodies[body];
-        let (coordinates, velocities) = self.names(body)?;
-        let mut x = coordinates.iter().map(|name| graph.symbol(name));
-        let mut eta = velocities.iter().map(|name| graph.symbol(name));
+        let (coordinates, velocities) = self.moved_by(body)?;
+        let (mut x, mut eta) = (coordinates.into_iter(), velocities.into_iter());
         let mut x = || x.next().unwrap_or(Expr::ZERO); // the kind determines their number
         let mut eta = || eta.next().unwrap_or(Expr::ZERO);
         // The position of the joint on the link of the parent.
@@ -161,7 +165,7 @@ impl<'g> Tree<'g> {
         let mut push = |rotation: Tensor<'g>, hinge: Hinge<'g>| {
             let on =
                 if links.is_empty() { (parent.link, place) } else { (Some(first + links.len() - 1), ZERO) };
-            links.push(Link { parent: on.0, place: on.1, rotation, hinge });
+            links.push(Link { parent: on.0, place: on.1, rotation, hinge, follows: None });
             stand = Stand { link: Some(first + links.len() - 1), place: ZERO, rotation: unit() };
         };
         let mut matrix = unit();
@@ -247,6 +251,48 @@ impl<'g> Tree<'g> {
         }
     }
 
+    /// What takes the place of x and η in the joint of a body: symbols, or multiples of those that it follows.
+    fn moved_by(&self, body: usize) -> Result<(Vec<Expr<'g>>, Vec<Expr<'g>>), TreeError> {
+        let symbols = |names: Vec<String>| -> Vec<Expr<'g>> {
+            names.iter().map(|name| self.graph.symbol(name)).collect()
+        };
+        let (coordinates, velocities) = self.names(body)?;
+        let Some(Followed { body, ratio, offset }) = self.followed(body)? else {
+            return Ok((symbols(coordinates), symbols(velocities)));
+        };
+        let (coordinates, velocities) = self.names(body)?;
+        let geared = |x: Expr<'g>| ratio * x;
+        let coordinates = symbols(coordinates).into_iter().map(|x| geared(x) + offset).collect();
+        Ok((coordinates, symbols(velocities).into_iter().map(geared).collect()))
+    }
+
+    /// The joint that moves the joint of a body, by way of any number of others that follow it too; none for a
+    /// joint that moves by itself.
+    fn followed(&self, body: usize) -> Result<Option<Followed<'g>>, TreeError> {
+        let (mut ratio, mut offset) = (Expr::ONE, Expr::ZERO);
+        let mut line = vec![body];
+        loop {
+            let last = &self.bodies[line[line.len() - 1]];
+            let Some(follows) = &last.joint.follows else { break };
+            let unknown =
+                || TreeError::NoFollowed { body: last.name.clone(), followed: follows.body.clone() };
+            let next = self.place_of(&follows.body).ok_or_else(unknown)?;
+            if !(last.joint.kind.is_single() && self.bodies[next].joint.kind.is_single()) {
+                let (body, followed) = (last.name.clone(), follows.body.clone());
+                return Err(TreeError::NotSingle { body, followed });
+            }
+            offset += ratio * follows.offset;
+            ratio *= follows.ratio;
+            line.push(next);
+            if line[..line.len() - 1].contains(&next) {
+                let bodies = line.iter().map(|&body| self.bodies[body].name.clone()).collect();
+                return Err(TreeError::FollowedCircle { bodies });
+            }
+        }
+        let body = line[line.len() - 1];
+        Ok((line.len() > 1).then_some(Followed { body, ratio, offset }))
+    }
+
     fn names(&self, body: usize) -> Result<(Vec<String>, Vec<String>), TreeError> {
         let TreeBody { name, joint, .. } = &self.bodies[body];
         let (coordinates, velocities) = joint.names_for(name);
@@ -306,6 +352,13 @@ impl<'g> Tree<'g> {
         }
         on_link
     }
+}
+
+/// The body whose joint moves another joint: x = ratio · x of the body + offset.
+struct Followed<'g> {
+    body: usize,
+    ratio: Expr<'g>,
+    offset: Expr<'g>,
 }
 
 /// The mass m, the first moment m c and the inertia about the origin of a link.

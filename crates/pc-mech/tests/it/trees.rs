@@ -21,6 +21,8 @@ struct Hung {
     centre: [f64; 3],
     /// Points of unit mass, which give the inertia of a body.
     spread: [[f64; 3]; 3],
+    /// The body whose joint moves this one, with ratio and offset.
+    follows: Option<(usize, f64, f64)>,
 }
 
 const KINDS: usize = 9;
@@ -60,6 +62,7 @@ fn body(index: usize) -> impl Strategy<Value = Hung> {
             mass,
             centre,
             spread,
+            follows: None,
         },
     )
 }
@@ -143,11 +146,18 @@ impl Hung {
             7 => Joint::spherical(),
             _ => Joint::free(),
         };
+        let joint = match self.follows {
+            Some((body, ratio, offset)) => joint.following(format!("b{body}"), ratio, offset),
+            None => joint,
+        };
         let rows = self.tilted();
         joint.at(self.place).rotated(&Matrix::from_fn(3, 3, |i, j| rows[i][j]))
     }
 
     fn sizes(&self) -> (usize, usize) {
+        if self.follows.is_some() {
+            return (0, 0);
+        }
         [(0, 0), (1, 1), (1, 1), (1, 1), (2, 2), (2, 2), (3, 3), (4, 3), (7, 6)][self.kind]
     }
 
@@ -216,11 +226,14 @@ fn systems<'g>(graph: &'g Graph, bodies: &[Hung]) -> (System<'g>, System<'g>) {
     let x = tree.coordinates();
     let mut by_hand = start();
     let mut placed: Vec<([Expr<'g>; 3], Rows<'g>)> = Vec::new();
-    let mut next = 0;
-    for body in bodies {
+    let starts: Vec<usize> =
+        (0..bodies.len()).map(|i| bodies[..i].iter().map(|body| body.sizes().0).sum()).collect();
+    for (body, &start) in bodies.iter().zip(&starts) {
         let (place, rotation) = body.parent.map_or(([Expr::ZERO; 3], identity()), |parent| placed[parent]);
-        let (way, turned) = body.moved(&x[next..]);
-        next += body.sizes().0;
+        let (way, turned) = match body.follows {
+            Some((followed, ratio, offset)) => body.moved(&[ratio * x[starts[followed]] + offset]),
+            None => body.moved(&x[start..]),
+        };
         let tilted = body.tilted();
         let offset = on(&tilted, way);
         let offset = on(&rotation, std::array::from_fn(|i| offset[i] + body.place[i]));
@@ -328,6 +341,60 @@ fn along_spheres(bodies: &[Hung], y: &[f64], numbers: impl Iterator<Item = f64>)
     direction
 }
 
+/// Random trees in which most joints with one coordinate follow the first such joint, or the last.
+fn geared(cases: u32, count: usize, check: impl Fn(&[Hung], &[f64])) {
+    trees(cases, count, |bodies, numbers| {
+        let mut bodies = bodies.to_vec();
+        let single: Vec<usize> = (0..count).filter(|&i| (1..=3).contains(&bodies[i].kind)).collect();
+        let [first, others @ .., last] = &single[..] else { return };
+        for (n, &i) in others.iter().enumerate() {
+            let followed = if n % 2 == 0 { *first } else { *last };
+            bodies[i].follows = (n % 3 < 2).then_some((followed, 0.7 - 0.9 * n as f64, 0.3));
+        }
+        if others.is_empty() {
+            bodies[*first].follows = Some((*last, -0.8, 0.1));
+        }
+        check(&bodies, numbers);
+    });
+}
+
+#[test]
+fn geared_joints_move_as_bodies_placed_by_hand() {
+    geared(40, 6, |bodies, numbers| {
+        let graph = Graph::new();
+        let (hung, placed) = systems(&graph, bodies);
+        let y = state(bodies, numbers);
+        let rates = |system: &System<'_>, elimination: TreeElimination| -> Vec<f64> {
+            let options = CompileOptions::default().jacobian(false).elimination(elimination);
+            system.poincare().unwrap().compile_for(options).unwrap().rates(0.0, &y).unwrap()
+        };
+        let placed = rates(&placed, TreeElimination::Whole);
+        for elimination in [TreeElimination::ByJoints, TreeElimination::Whole] {
+            let hung = rates(&hung, elimination);
+            assert!(difference(&hung, &placed) < ROUNDING, "{elimination:?}: {hung:?}\n{placed:?}");
+        }
+    });
+}
+
+#[test]
+fn forces_on_geared_joints_are_those_of_their_accelerations() {
+    geared(24, 8, |bodies, numbers| {
+        let graph = Graph::new();
+        let system = hung(&graph, bodies, true);
+        let equations = system.poincare().unwrap();
+        let y = state(bodies, numbers);
+        let options = CompileOptions::default().jacobian(false);
+        let rates = equations.compile_for(options).unwrap().rates(0.0, &y).unwrap();
+        let n = system.frame().coordinates().len();
+        let found = equations.inverse_dynamics();
+        let missing = values(&system, &found, &y, &rates[n..]);
+        let other: Vec<f64> = rates[n..].iter().map(|rate| rate + 1.0).collect();
+        let taken = values(&system, &found, &y, &other);
+        let size = taken.iter().fold(1.0f64, |size, force| size.max(force.abs()));
+        assert!(missing.iter().all(|force| force.abs() < 1e-11 * size), "{missing:?} of {size}");
+    });
+}
+
 #[test]
 fn joint_after_joint_is_the_whole_tree_at_once() {
     trees(12, 3, |bodies, numbers| {
@@ -373,6 +440,7 @@ fn the_jacobian_of_a_chain_with_oblique_axes_is_that_of_its_rates() {
                 mass: 0.8 + i as f64,
                 centre: [0.13, -0.21, 0.34 - 0.2 * i as f64],
                 spread: [[0.5, 0.1, 0.2], [-0.3, 0.4, 0.1], [0.1, 0.2, 0.6]],
+                follows: None,
             })
             .collect();
         let graph = Graph::new();
@@ -590,6 +658,7 @@ fn a_tree_without_its_cyclic_coordinates_moves_as_before() {
             mass: 1.0,
             centre: [0.1, 0.2, -0.3],
             spread: [[0.5, 0.0, 0.1], [0.0, 0.4, 0.0], [0.1, 0.2, 0.6]],
+            follows: None,
         })
         .collect();
     let system = hung(&graph, &bodies, false);

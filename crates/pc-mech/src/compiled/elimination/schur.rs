@@ -47,8 +47,7 @@ impl Schur {
         backend: Backend,
     ) -> Result<Option<Schur>, ExprError> {
         let (system, dynamics) = (&tree.system, &tree.dynamics);
-        let freedoms = || dynamics.articulated.links.iter().flat_map(|link| &link.freedoms);
-        if freedoms().any(|freedom| freedom.is_massless) {
+        if dynamics.articulated.pivots().any(|pivot| pivot.is_massless) {
             return Ok(None);
         }
         let free = system.in_order(&dynamics.accelerations());
@@ -66,7 +65,8 @@ impl Schur {
         );
         let (solved, entries) = nonzeros(k, columns.iter().map(|column| sparse(column)));
         outputs.extend(entries);
-        let watched: Vec<(Expr<'g>, Expr<'g>)> = freedoms().filter_map(|freedom| freedom.watched).collect();
+        let watched: Vec<(Expr<'g>, Expr<'g>)> =
+            dynamics.articulated.pivots().filter_map(|pivot| pivot.watched).collect();
         outputs.extend(watched.iter().map(|&(pivot, _)| pivot));
         outputs.extend(watched.iter().map(|&(_, size)| size));
         let equations = Evaluator::new(Program::new(graph, inputs, &outputs)?, backend);

@@ -7,7 +7,7 @@ use pc_algebra::{Matrix, determinant, inverse};
 use pc_expr::{Expr, Graph};
 
 use crate::points::equations::PointEquations;
-use crate::tree::articulated::Freedom;
+use crate::tree::articulated::Pivot;
 use crate::tree::equations::TreeEquations;
 
 /// The inverse of a symmetric matrix in the form in which it is applied. Zeros of the matrix cost nothing.
@@ -84,12 +84,11 @@ impl<'g> Factors<'g> {
             }
             Factors::Inverse(_) => Vec::new(),
             Factors::Tree(tree) => {
-                let links = tree.system.places.iter().zip(&tree.dynamics.articulated.links);
-                let freedoms = links.flat_map(|(places, link)| places.iter().zip(&link.freedoms));
-                let watched = |(&place, joint): (&usize, &Freedom<'g>)| {
-                    joint.watched.map(|(pivot, size)| Watched { place, pivot, size })
+                let watched = |known: Pivot<'g>| {
+                    let place = tree.system.places[known.link][known.component];
+                    known.watched.map(|(pivot, size)| Watched { place, pivot, size })
                 };
-                freedoms.filter_map(watched).collect()
+                tree.dynamics.articulated.pivots().filter_map(watched).collect()
             }
             Factors::Points(points) => {
                 let pivots = points.elimination.pivots();
