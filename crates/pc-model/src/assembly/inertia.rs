@@ -73,16 +73,21 @@ impl<'g> Assembly<'g> {
     }
 }
 
-/// Whether a body, or any body attached to it, directly or through others, has an `inertia`.
+/// Whether a body, or any body that moves with it, has an `inertia`: bodies attached to it or whose joints follow
+/// its joint, directly or through others.
 fn has_inertia(document: &Document, body: &TreeBody) -> bool {
     let mut below = vec![body.name.text.as_str()];
-    while let Some(name) = below.pop() {
+    let mut seen = 0;
+    while let Some(&name) = below.get(seen) {
+        seen += 1;
         let own = document.tree.iter().find(|body| body.name.text == name);
         if own.is_some_and(|body| body.inertia.is_some()) {
             return true;
         }
-        let hanging = document.tree.iter().filter(|body| body.parent() == Some(name));
-        below.extend(hanging.map(|body| body.name.text.as_str()));
+        let follows = |body: &TreeBody| body.joint.follows.as_ref().is_some_and(|f| f.body.value == name);
+        let moved = document.tree.iter().filter(|body| body.parent() == Some(name) || follows(body));
+        let moved: Vec<&str> = moved.map(|body| body.name.text.as_str()).collect();
+        below.extend(moved.into_iter().filter(|name| !below.contains(name)).collect::<Vec<_>>());
     }
     false
 }

@@ -137,6 +137,20 @@ pub enum ErrorKind {
         /// The bodies, each attached to the next and the last to the first.
         bodies: Vec<String>,
     },
+    /// A joint that another would follow, whose coordinates are none or several.
+    #[error("the joint of `{name}` is {kind}: a joint follows one that has exactly one coordinate")]
+    NotFollowable {
+        /// The body whose joint would be followed.
+        name: String,
+        /// The kind of its joint.
+        kind: &'static str,
+    },
+    /// Joints that follow each other in a circle.
+    #[error("joints follow each other in a circle: {}", bodies.join(", "))]
+    CircularGears {
+        /// The bodies, the joint of each following that of the next and the last that of the first.
+        bodies: Vec<String>,
+    },
     /// An entry about the motion of a coordinate that belongs to a joint.
     #[error("the joint of `{body}` says how `{name}` moves")]
     OfJoint {
@@ -375,6 +389,8 @@ impl ErrorKind {
                 suggest(name, known, &format!("the bodies with joints are {}; \"world\" is what they hang on in the end", listed(known)))
             }
             Self::CircularParents { .. } => "leave the `parent` of one of them out: it hangs on the world then".into(),
+            Self::NotFollowable { .. } => "follow a revolute, prismatic or screw joint".into(),
+            Self::CircularGears { .. } => "leave `follows` out of one of them: it moves by itself then".into(),
             Self::OfJoint { .. } => "give its start value alone, or leave it out".into(),
             Self::DefinedBesideTurning { .. } => {
                 "give the velocities of what belongs to no joint in [kinematics]".into()

@@ -8,7 +8,7 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::{ErrorKind, Role};
 use crate::diagnostics::meaning::MeaningError;
 use crate::document::contents::Document;
-use crate::document::expression::Name;
+use crate::document::expression::{Name, NamedExpression};
 
 /// Checks that the energy is given by `[lagrangian]` or `[bodies]`.
 pub(super) fn require_energy(document: &Document) -> Result<(), ModelError> {
@@ -88,10 +88,14 @@ impl Document {
             (&self.definitions, Role::Definition),
             (&self.coordinates, Role::Coordinate),
             (&self.integrals, Role::Integral),
-            (&self.outputs, Role::Output),
         ] {
             names.extend(entries.iter().map(|entry| (&entry.name, role)));
         }
+        // The coordinate of a joint that follows another is a definition and an output.
+        let is_defined =
+            |output: &&NamedExpression| self.definitions.iter().any(|known| known.name == output.name);
+        let outputs = self.outputs.iter().filter(|output| !is_defined(output));
+        names.extend(outputs.map(|output| (&output.name, Role::Output)));
         names.extend(self.simulation.hamel.iter().map(|given| (&given.name, Role::QuasiVelocity)));
         names
     }

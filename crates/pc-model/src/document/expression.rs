@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use pc_expr::parse::{Ast, Declared, Span, parse, parse_with};
+use pc_expr::parse::{Ast, Declared, Span, parse_with};
 
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::source::{Place, Source};
@@ -53,7 +53,17 @@ impl Expression {
 
     /// An expression that is not written but implied by the text at a place in the file.
     pub(super) fn following(source: &Source, text: String, place: &Place) -> Result<Expression, ModelError> {
-        let ast = parse(&text).map_err(|error| source.error(place, error))?;
+        Expression::implied(source, text, place, &[])
+    }
+
+    /// An expression, implied by the text at a place in the file, that may call the declared functions.
+    pub(super) fn implied(
+        source: &Source,
+        text: String,
+        place: &Place,
+        functions: &[Declared],
+    ) -> Result<Expression, ModelError> {
+        let ast = parse_with(&text, functions).map_err(|error| source.error(place, error))?;
         let map = TextMap::standing_for(place.span.clone(), text.len());
         Ok(Expression { text, ast, entry: place.entry.clone(), map })
     }

@@ -3,13 +3,14 @@
 
 use std::collections::{HashMap, HashSet};
 
-use pc_expr::parse::AstKind;
+use pc_expr::parse::{AstKind, Declared};
 
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::{ErrorKind, Role};
 use crate::diagnostics::meaning::MeaningError;
 use crate::document::contents::{Constraint, Document, QuasiVelocity};
 use crate::document::expression::{Expression, Located, Name, NamedExpression};
+use crate::document::following;
 use crate::document::joints::{TreeBody, WORLD, prime};
 use crate::document::loops::Loop;
 
@@ -17,8 +18,13 @@ use crate::document::loops::Loop;
 ///
 /// # Errors
 /// If a body is attached to one that does not exist, or the motion of a joint is also given elsewhere.
-pub(super) fn declare(document: &mut Document, loops: Vec<Loop>) -> Result<(), ModelError> {
+pub(super) fn declare(
+    document: &mut Document,
+    loops: Vec<Loop>,
+    functions: &[Declared],
+) -> Result<(), ModelError> {
     check_parents(document)?;
+    following::declare(document, functions)?;
     check_masses(document)?;
     close(document, loops)?;
     for point in &document.points {
@@ -68,7 +74,8 @@ fn check_parents(document: &Document) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Checks that each moving body, or one attached to it, has mass, unless `[lagrangian]` adds energy.
+/// Checks that each moving body, or one that moves with it, has mass, unless `[lagrangian]` adds energy. The bodies
+/// attached to a body move with it, and so do those whose joints follow its joint.
 fn check_masses(document: &Document) -> Result<(), ModelError> {
     if document.lagrangian.as_ref().is_some_and(|own| own.kinetic.is_some() || own.lagrangian.is_some()) {
         return Ok(());
@@ -79,10 +86,13 @@ fn check_masses(document: &Document) -> Result<(), ModelError> {
     let place = |name: &str| document.tree.iter().position(|body| body.name.text == name);
     let mut carries = vec![false; document.tree.len()];
     for body in document.tree.iter().filter(has_mass) {
-        let mut next = place(&body.name.text);
-        while let Some(body) = next.filter(|&body| !carries[body]) {
-            carries[body] = true;
-            next = document.tree[body].parent().and_then(place);
+        let mut open: Vec<usize> = place(&body.name.text).into_iter().collect();
+        while let Some(body) = open.pop() {
+            if !std::mem::replace(&mut carries[body], true) {
+                let body = &document.tree[body];
+                let followed = body.joint.follows.as_ref().map(|following| following.body.value.as_str());
+                open.extend([body.parent(), followed].into_iter().flatten().filter_map(place));
+            }
         }
     }
     let moves = |body: &TreeBody| !body.joint.coordinates.is_empty();

@@ -58,6 +58,21 @@ pub struct Joint {
     pub coordinates: Vec<Name>,
     /// The names of its quasi-velocities, where `x'` is the velocity of the coordinate `x`.
     pub quasi_velocities: Vec<Name>,
+    /// The joint whose motion it repeats, for a joint without coordinates of its own.
+    pub follows: Option<Following>,
+}
+
+/// How a joint with one coordinate is geared to that of another body: x = ratio · x of the other + offset.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Following {
+    /// The body whose joint it follows.
+    pub body: Located<String>,
+    /// The ratio; 1 if left out.
+    pub ratio: Option<Expression>,
+    /// The offset; 0 if left out.
+    pub offset: Option<Expression>,
+    /// The name of x, which is a definition and an output.
+    pub name: Name,
 }
 
 impl Joint {
@@ -113,6 +128,11 @@ impl JointKind {
     /// Its word.
     pub(crate) fn word(self) -> &'static str {
         Self::ALL.iter().find(|(_, kind)| *kind == self).map_or("", |(word, _)| word)
+    }
+
+    /// Whether it has exactly one coordinate.
+    pub fn is_single(self) -> bool {
+        matches!(self, JointKind::Revolute | JointKind::Prismatic | JointKind::Screw)
     }
 
     /// The number of axes that this kind of joint has.

@@ -36,7 +36,7 @@ impl Document {
             document.read(&item, &mut loops)?;
         }
         document.source = source;
-        hanging::declare(&mut document, loops)?;
+        hanging::declare(&mut document, loops, &declared)?;
         checks::check_names(&document)?;
         checks::require_motion(&document)?;
         checks::require_energy(&document)?;

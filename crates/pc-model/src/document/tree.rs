@@ -7,11 +7,23 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::document::bodies::{body, inertia};
 use crate::document::contents::Body;
 use crate::document::expression::Name;
-use crate::document::joints::{Joint, JointKind, JointRotation, Point, TreeBody, WORLD, prime};
+use crate::document::joints::{Following, Joint, JointKind, JointRotation, Point, TreeBody, WORLD, prime};
 
 const KEYS: &[&str] = &["parent", "joint", "mass", "center", "inertia", "force", "torque"];
-const JOINT_KEYS: &[&str] =
-    &["kind", "axis", "axes", "pitch", "at", "rotation", "turns", "coordinates", "quasi_velocities"];
+const JOINT_KEYS: &[&str] = &[
+    "kind",
+    "axis",
+    "axes",
+    "pitch",
+    "at",
+    "rotation",
+    "turns",
+    "coordinates",
+    "quasi_velocities",
+    "follows",
+    "ratio",
+    "offset",
+];
 pub(super) const JOINT: &str = "joint = { kind = \"revolute\", axis = [0, 0, 1], at = [0, 0, 0] }";
 const AXIS: &str = "axis = [0, 0, 1]";
 const AXES: &str = "axes = [[1, 0, 0], [0, 1, 0]]";
@@ -84,6 +96,7 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
     let table = item.table("a table", "{ kind = \"revolute\", axis = [0, 0, 1] }")?;
     let (mut kind, mut axes, mut pitch, mut at, mut rotation) = (None, None, None, None, None);
     let (mut coordinates, mut quasi_velocities) = (None, None);
+    let (mut follows, mut ratio, mut offset) = (None, None, None);
     for part in table.items() {
         match part.key() {
             "kind" => kind = Some(part.choice(JointKind::ALL)?),
@@ -107,6 +120,9 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
             }
             "coordinates" => coordinates = Some(part),
             "quasi_velocities" => quasi_velocities = Some(part),
+            "follows" => follows = Some(part),
+            "ratio" => ratio = Some(part),
+            "offset" => offset = Some(part),
             _ => return Err(part.unknown(JOINT_KEYS)),
         }
     }
@@ -130,6 +146,12 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
         (_, None) => None,
     };
     let coordinates = names(coordinates.as_ref(), body, kind.coordinates(body.key()))?;
+    let gear = Gear { follows, ratio, offset };
+    if let Some(follows) = gear.following(kind, &coordinates, quasi_velocities.as_ref())? {
+        let (coordinates, quasi_velocities) = (Vec::new(), Vec::new());
+        let (place, follows) = (item.place(), Some(follows));
+        return Ok(Joint { place, kind, axes, pitch, at, rotation, coordinates, quasi_velocities, follows });
+    }
     let own: Vec<String> = coordinates.iter().map(|name| name.text.clone()).collect();
     let usual = kind.quasi_velocities(body.key(), &own);
     let quasi_velocities = match &quasi_velocities {
@@ -139,7 +161,47 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
         }
         given => names(given.as_ref(), body, usual)?,
     };
-    Ok(Joint { place: item.place(), kind, axes, pitch, at, rotation, coordinates, quasi_velocities })
+    let (place, follows) = (item.place(), None);
+    Ok(Joint { place, kind, axes, pitch, at, rotation, coordinates, quasi_velocities, follows })
+}
+
+/// The entries of a joint that gear it to another.
+struct Gear<'a> {
+    follows: Option<Item<'a>>,
+    ratio: Option<Item<'a>>,
+    offset: Option<Item<'a>>,
+}
+
+impl Gear<'_> {
+    /// How the joint follows another, if it does; `names` are those that its coordinates would have.
+    fn following(
+        self,
+        kind: JointKind,
+        names: &[Name],
+        quasi_velocities: Option<&Item<'_>>,
+    ) -> Result<Option<Following>, ModelError> {
+        let Gear { follows, ratio, offset } = self;
+        let Some(follows) = follows else {
+            return match ratio.or(offset) {
+                None => Ok(None),
+                Some(part) => {
+                    let (key, example) = (part.key().to_owned(), "follows = \"…\"");
+                    Err(part.key_error(ErrorKind::NoEffect { key, without: "follows", example }))
+                }
+            };
+        };
+        let [name] = names else { return Err(without_effect(&follows, kind)) };
+        if let Some(part) = quasi_velocities {
+            return Err(part.key_error(ErrorKind::Exclusive {
+                first: "follows",
+                second: "quasi_velocities",
+                help: "a joint that follows another has no quasi-velocity of its own: leave `quasi_velocities` out",
+            }));
+        }
+        let expression = |part: Option<Item<'_>>| part.map(|part| part.expression()).transpose();
+        let (ratio, offset) = (expression(ratio)?, expression(offset)?);
+        Ok(Some(Following { body: follows.text()?, ratio, offset, name: name.clone() }))
+    }
 }
 
 /// The components of a direction. A component that is only rounding error relative to the largest, such as

@@ -7,7 +7,7 @@ use pc_mech::{Expr, Joint, Matrix, Tree, TreeBody};
 
 use crate::diagnostics::error::ModelError;
 use crate::document::tree::ROUNDING;
-use crate::document::{self, Expression, JointKind, JointRotation};
+use crate::document::{self, Expression, Following, JointKind, JointRotation};
 use crate::names::scope::Scope;
 use crate::names::stage::Stage;
 
@@ -80,6 +80,16 @@ impl<'g> Scope<'g, '_> {
         };
         let named = |names: &[document::Name]| names.iter().map(|name| name.text.clone()).collect::<Vec<_>>();
         let made = made.named(named(&joint.coordinates), named(&joint.quasi_velocities));
+        let made = match &joint.follows {
+            Some(Following { body, ratio, offset, .. }) => {
+                let mut constant = |part: &Option<Expression>| {
+                    part.as_ref().map(|part| self.resolve(part, Stage::Joint)).transpose()
+                };
+                let (ratio, offset) = (constant(ratio)?, constant(offset)?);
+                made.following(&body.value, ratio.unwrap_or(Expr::ONE), offset.unwrap_or(Expr::ZERO))
+            }
+            None => made,
+        };
         let made = match &joint.at {
             Some(at) => made.at(self.constants(at)?),
             None => made,

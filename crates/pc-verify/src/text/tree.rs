@@ -8,7 +8,7 @@ use std::collections::HashSet;
 
 use pc_expr::parse::{Ast, AstKind};
 use pc_model::document::{
-    Document, Expression, Joint, JointKind, JointRotation, NamedExpression, Point, TreeBody,
+    Document, Expression, Following, Joint, JointKind, JointRotation, NamedExpression, Point, TreeBody,
 };
 
 use crate::error::Unable;
@@ -109,7 +109,7 @@ impl<'a> Tree<'a> {
             let first = all.len();
             let defined =
                 |from: usize| (first + from..first + from + 9).map(Term::Definition).collect::<Vec<_>>();
-            let motion = Motion::of(&body.joint, names)?;
+            let motion = Motion::of(&body.joint, self.ways(&body.joint, names)?, names)?;
             all.extend(constant_rotation(&body.joint, names)?);
             all.extend(match motion.turn {
                 Some(turn) => product(&defined(0), &turn),
@@ -130,6 +130,26 @@ impl<'a> Tree<'a> {
         }
         all.extend(written(&self.written[self.constant..])?);
         Ok(all)
+    }
+
+    /// The coordinates of a joint; ratio · y + offset if it follows one with the coordinate y.
+    fn ways(&self, joint: &Joint, names: &Names) -> Result<Vec<Term>, Unable> {
+        let Some(Following { body, ratio, offset, .. }) = &joint.follows else {
+            return coordinates(joint, names);
+        };
+        let mut ways = match place_of(self.document, Some(&body.value)) {
+            Some(followed) => self.ways(&self.document.tree[followed].joint, names)?,
+            None => Vec::new(),
+        };
+        for way in &mut ways {
+            if let Some(ratio) = ratio {
+                *way = times([&names.resolve(&ratio.ast)?, way]);
+            }
+            if let Some(offset) = offset {
+                *way = sum([way.clone(), names.resolve(&offset.ast)?]);
+            }
+        }
+        Ok(ways)
     }
 
     /// The rates of the coordinates of joints, with the names of the coordinates.
@@ -209,8 +229,8 @@ struct Motion {
 }
 
 impl Motion {
-    fn of(joint: &Joint, names: &Names) -> Result<Motion, Unable> {
-        let x = coordinates(joint, names)?;
+    /// The movement of a joint whose coordinates are x.
+    fn of(joint: &Joint, x: Vec<Term>, names: &Names) -> Result<Motion, Unable> {
         let axis = |number: usize| -> Vec<Term> {
             let axis = joint.axes.get(number).copied().unwrap_or_default();
             let length = axis.iter().map(|part| part * part).sum::<f64>().sqrt();
