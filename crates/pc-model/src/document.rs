@@ -42,7 +42,7 @@ pub use draw::{Draw, DrawnPlace, DrawnShape};
 pub use expression::{Expression, Located, Name, NamedExpression};
 pub use hidden::is_hidden;
 pub use inertia::Inertia;
-pub use joints::{Following, Joint, JointKind, JointRotation, Point, TreeBody, WORLD};
+pub use joints::{Drive, Following, Joint, JointKind, JointRotation, Point, TreeBody, WORLD};
 pub use reading::{MOST_BYTES, read_bounded, read_file_bounded};
 pub use run_settings::Simulation;
 pub use schema::SCHEMA;

@@ -62,6 +62,16 @@ pub enum TreeError {
         /// The body whose joint is followed.
         followed: String,
     },
+    /// A spring, damping or armature of a joint that has not exactly one coordinate.
+    #[error(
+        "the joint of `{body}` cannot have the {what} given to it: it does not have exactly one coordinate"
+    )]
+    NoDrive {
+        /// The body.
+        body: String,
+        /// Which of them.
+        what: &'static str,
+    },
     /// Joints that follow each other in a circle.
     #[error("joints follow each other in a circle: {}", bodies.join(", "))]
     FollowedCircle {

@@ -175,6 +175,8 @@ impl<'g> SystemBuilder<'g> {
         let variables = frame.coordinates().iter().chain(eta).chain([&self.time]).chain(states);
         tree.check_constant(&variables.chain(&self.signals).copied().collect::<Vec<_>>())?;
         let share = tree.motions().share(&gravity, eta);
+        sums.lagrangian.extend(tree.springs());
+        sums.forces.push(tree.dampers(eta));
         let others = self.graph.sum(sums.lagrangian.iter().copied());
         sums.lagrangian.extend(share.kinetic.into_iter().chain(share.weight));
         sums.forces.push(share.forces);

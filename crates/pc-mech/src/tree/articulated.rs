@@ -14,7 +14,7 @@
 //!
 //!   C_d · A + Σ_e D_de w_e + p_d = τ_d
 //!
-//! to the equations. A link that moves by m s w_d adds m Φ s to C_d, m s·C_e to D_de, m (m s·Φ s + 2 s·C_d) to D_dd
+//! to the equations. A link that moves by m s w_d adds m Φ s to C_d, m s·C_e to D_de, m (m s·Φ s + m·armature + 2 s·C_d) to D_dd
 //! and m s·p to p_d. Where the links meet, w_d is eliminated like a component of a joint.
 //!
 //! This is the elimination M = Lᵀ D L of the mass matrix of the whole tree, in an order that produces no fill-in
@@ -89,7 +89,7 @@ impl<'g> Inertia6<'g> {
     fn resisting(&self, graph: &'g Graph, direction: Direction<'g>, size: Expr<'g>) -> Option<Inertia6<'g>> {
         let column = direction.column(graph, self);
         let number = |x: Expr<'g>| x.constant().map(Number::to_f64);
-        let (pivot, size) = (number(direction.along(&column))?, number(size)?);
+        let (pivot, size) = (number(direction.along(&column) + direction.armature)?, number(size)?);
         (pivot > ROUNDING * size).then(|| self.map(|r, c, entry| entry - column[r] * column[c] / pivot))
     }
 
@@ -206,20 +206,26 @@ pub(crate) struct Pivot<'g> {
 }
 
 /// The direction s, one of the six components; for a screw, one of the first three plus a multiple of the
-/// displacement along the same axis.
+/// displacement along the same axis. The armature J resists it in addition to Φ.
 #[derive(Clone, Copy, Debug)]
 struct Direction<'g> {
     component: usize,
     pitch: Expr<'g>,
+    armature: Expr<'g>,
 }
 
 /// A remainder this small relative to its terms may be a rounding error.
 const ROUNDING: f64 = 1e-12;
 
 impl<'g> Direction<'g> {
-    /// Whether the direction is component `r` of the six.
+    /// Whether eliminating the direction eliminates one of the six components: nothing resists it afterwards.
+    fn is_pure(&self) -> bool {
+        self.pitch.is_zero() && self.armature.is_zero()
+    }
+
+    /// Whether eliminating the direction eliminates component `r` of the six.
     fn is_component(&self, r: usize) -> bool {
-        self.pitch.is_zero() && r == self.component
+        self.is_pure() && r == self.component
     }
 
     /// Φ s
@@ -230,19 +236,20 @@ impl<'g> Direction<'g> {
         })
     }
 
-    /// An upper bound on s·Φ s: the trace of J, or of M, in the units of the direction.
+    /// An upper bound on s·Φ s + J: the trace of the block of Φ, in the units of the direction, and the armature.
     fn size(&self, graph: &'g Graph, phi: &Inertia6<'g>) -> Expr<'g> {
         let trace = |first: usize| graph.sum((first..first + 3).map(|r| phi.0[r][r]));
-        match self.component < 3 {
+        let size = match self.component < 3 {
             true if self.pitch.is_zero() => trace(0),
             true => trace(0) + self.pitch.square() * trace(3),
             false => trace(3),
-        }
+        };
+        size + self.armature
     }
 
     /// Adds s w to an acceleration.
     fn accelerate(&self, graph: &'g Graph, a: &mut Spatial<'g>, w: Expr<'g>) {
-        let Direction { component, pitch } = *self;
+        let Direction { component, pitch, .. } = *self;
         a[component] = graph.keep(a[component] + w);
         if !pitch.is_zero() {
             a[component + 3] = graph.keep(a[component + 3] + pitch * w);
@@ -269,9 +276,10 @@ impl<'g> Freedom<'g> {
         self.direction.accelerate(graph, a, w);
     }
 
-    /// Removes the free component from an acceleration and returns it, if it is one of the six components.
+    /// Removes the free component from an acceleration and returns it, if it is one of the six components and
+    /// has no inertia of its own.
     pub(crate) fn leave_out(&self, a: &mut Spatial<'g>) -> Expr<'g> {
-        match self.direction.pitch.is_zero() {
+        match self.direction.is_pure() {
             true => std::mem::replace(&mut a[self.direction.component], Expr::ZERO),
             false => Expr::ZERO,
         }
@@ -290,12 +298,12 @@ impl<'g> Moved<'g> {
     }
 }
 
-impl<'g> Hinge<'g> {
+impl<'g> Link<'g> {
     /// The directions of the free components, in the order of the quasi-velocities of the hinge.
     fn directions(&self) -> Vec<Direction<'g>> {
-        let of = |component: usize| Direction { component, pitch: Expr::ZERO };
-        match self {
-            Hinge::Turn { axis, pitch, .. } => vec![Direction { component: *axis, pitch: *pitch }],
+        let of = |component: usize| Direction { component, pitch: Expr::ZERO, armature: self.armature };
+        match &self.hinge {
+            Hinge::Turn { axis, pitch, .. } => vec![Direction { pitch: *pitch, ..of(*axis) }],
             Hinge::Slide { axis, .. } => vec![of(3 + axis)],
             Hinge::Ball { .. } => (0..3).map(of).collect(),
             Hinge::Free { .. } => (3..6).chain(0..3).map(of).collect(),
@@ -352,8 +360,9 @@ impl<'g> Open<'g> {
             let size = self.size(d, e);
             *size = graph.keep(*size + times * shared);
         }
+        let armature = ratio.square() * direction.armature;
         let size = self.size(d, d);
-        *size = graph.keep(*size + moved.along(graph, &own));
+        *size = graph.keep(*size + moved.along(graph, &own) + armature);
         let column = self.columns[i].entry(d).or_insert([Expr::ZERO; 6]);
         *column = std::array::from_fn(|r| graph.keep(column[r] + own[r]));
     }
@@ -446,7 +455,7 @@ impl<'g> Articulated<'g> {
             let mut itself = own.map(|own| Inertia6::rigid(&own[i]));
             let (whole, alone) = (inertia, itself);
             let moved = couplings.iter().enumerate().find_map(|(coupling, known)| {
-                let (ratio, direction) = (known.ratio(i)?, *link.hinge.directions().first()?);
+                let (ratio, direction) = (known.ratio(i)?, *link.directions().first()?);
                 Some(Moved { coupling, ratio, direction })
             });
             if let Some(moved) = &moved {
@@ -467,7 +476,7 @@ impl<'g> Articulated<'g> {
                 shared[d] = Some(open.close(graph, (d, Some(i)), Some(&mut inertia), size));
             }
             let mut freedoms = Vec::new();
-            let directions = if moved.is_some() { Vec::new() } else { link.hinge.directions() };
+            let directions = if moved.is_some() { Vec::new() } else { link.directions() };
             for direction in directions {
                 let size = |of: &Inertia6<'g>| direction.size(graph, of);
                 itself = itself.and_then(|left| left.resisting(graph, direction, alone.as_ref().map(size)?));
@@ -525,17 +534,31 @@ impl<'g> Articulated<'g> {
         accelerations[self.couplings[moved.coupling].owner].first().copied()
     }
 
-    /// The forces in the directions of the quasi-velocities of a link when these are the forces on all joints.
-    pub(crate) fn along(&self, link: usize, forces: &[Spatial<'g>]) -> Vec<Expr<'g>> {
+    /// The forces in the directions of the quasi-velocities of a link when these are the forces on all joints, and
+    /// the forces that their accelerations η̇ require of armatures.
+    pub(crate) fn along(
+        &self,
+        link: usize,
+        forces: &[Spatial<'g>],
+        accelerations: &[Expr<'g>],
+    ) -> Vec<Expr<'g>> {
         let graph = self.graph;
         if self.links[link].moved.is_none() {
-            return self.links[link].freedoms.iter().map(|freedom| freedom.along(&forces[link])).collect();
+            let along = |(freedom, &w): (&Freedom<'g>, &Expr<'g>)| {
+                freedom.along(&forces[link]) + freedom.direction.armature * w
+            };
+            return self.links[link].freedoms.iter().zip(accelerations).map(along).collect();
         }
-        let along = |&(i, _): &(usize, Expr<'g>)| {
-            self.links[i].moved.map_or(Expr::ZERO, |moved| moved.along(graph, &forces[i]))
-        };
         let owned = self.couplings.iter().filter(|coupling| coupling.owner == link);
-        owned.map(|coupling| graph.sum(coupling.moved.iter().map(along))).collect()
+        let along = |(coupling, &w): (&Coupling<'g>, &Expr<'g>)| {
+            let moved = coupling.moved.iter().filter_map(|&(i, _)| Some((i, self.links[i].moved?)));
+            let terms = moved.flat_map(|(i, moved)| {
+                let armature = moved.ratio.square() * moved.direction.armature;
+                [moved.along(graph, &forces[i]), armature * w]
+            });
+            graph.sum(terms)
+        };
+        owned.zip(accelerations).map(along).collect()
     }
 
     /// The response of the free components to the forces p on the links and the components τ = `applied` of the
@@ -565,7 +588,7 @@ impl<'g> Articulated<'g> {
                 for (p, &column) in p.iter_mut().zip(&freedom.column) {
                     *p = graph.keep(*p + column * impulse);
                 }
-                if freedom.direction.pitch.is_zero() {
+                if freedom.direction.is_pure() {
                     p[freedom.direction.component] = applied; // the remaining force is τ
                 }
                 for &(d, entry, _) in &freedom.coupled {
@@ -595,17 +618,16 @@ impl<'g> Articulated<'g> {
             };
             let mut of_link = vec![Expr::ZERO; link.freedoms.len()];
             for (j, freedom) in link.freedoms.iter().enumerate().rev() {
-                let Direction { component, pitch } = freedom.direction;
+                let component = freedom.direction.component;
                 let from_others = graph.dot(freedom.factors.iter().copied(), a.iter().copied());
                 let from_shared = freedom.coupled.iter().map(|&(d, _, factor)| factor * shared[d]);
                 let total = graph.keep(impulses[i][j] - from_others - graph.sum(from_shared));
-                if pitch.is_zero() {
+                if freedom.direction.is_pure() {
                     of_link[j] = total - a[component];
                     a[component] = total;
                 } else {
                     of_link[j] = total;
-                    a[component] = graph.keep(a[component] + total);
-                    a[component + 3] = graph.keep(a[component + 3] + pitch * total);
+                    freedom.accelerate(graph, &mut a, total);
                 }
             }
             for &d in link.meets.iter().rev() {
@@ -661,7 +683,7 @@ fn eliminate<'g>(
     size: Option<Expr<'g>>,
 ) -> Freedom<'g> {
     let column = direction.column(graph, inertia);
-    let pivot = direction.along(&column);
+    let pivot = direction.along(&column) + direction.armature;
     let inverse = graph.keep(pivot.powi(-1));
     let factors: Spatial<'g> = std::array::from_fn(|r| match direction.is_component(r) {
         true => Expr::ZERO,

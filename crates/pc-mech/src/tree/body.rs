@@ -91,6 +91,11 @@ impl<'g> TreeBody<'g> {
         self.parent.as_deref()
     }
 
+    /// The name of the body whose joint its own joint follows, if it does.
+    pub fn followed(&self) -> Option<&str> {
+        self.joint.follows.as_ref().map(|follows| follows.body.as_str())
+    }
+
     /// The mass m, the mass centre c and the inertia I about it, along body axes.
     pub fn mass_properties(&self) -> (Expr<'g>, [Expr<'g>; 3], Matrix<Expr<'g>>) {
         (self.mass, self.centre, self.inertia.matrix())

@@ -152,7 +152,7 @@ impl<'g> TreeDynamics<'g> {
     pub(crate) fn balance(&self, unknowns: &[Vec<Expr<'g>>]) -> Vec<Vec<Expr<'g>>> {
         let forces = self.forces_on_joints(unknowns, &vec![[Expr::ZERO; 6]; self.links.len()]);
         let left = |(i, applied): (usize, &Vec<Expr<'g>>)| {
-            let needed = self.articulated.along(i, &forces);
+            let needed = self.articulated.along(i, &forces, &unknowns[i]);
             applied.iter().zip(needed).map(|(&applied, needed)| applied - needed).collect()
         };
         self.applied.iter().enumerate().map(left).collect()

@@ -3,18 +3,42 @@
 use pc_expr::Expr;
 
 use crate::system::bodies::velocity::BodyVelocity;
+use crate::tree::joint::Drive;
 use crate::tree::kinematics::Motions;
 use crate::tree::spatial::{Vector, add, apply, apply_transpose, cross, dot};
+use crate::tree::tree::Tree;
 
 /// The terms that the bodies of a tree add to L and Q.
 pub(crate) struct TreeShare<'g> {
-    /// Σ ½ m |v_c|² + ½ ω·Iω (König).
+    /// Σ ½ m |v_c|² + ½ ω·Iω (König), and ½ J η² of armatures.
     pub(crate) kinetic: Vec<Expr<'g>>,
     /// Σ m g · r_c
     pub(crate) weight: Vec<Expr<'g>>,
     /// Q_1..Q_k (8)
     pub(crate) forces: Vec<Expr<'g>>,
     pub(crate) velocities: Vec<BodyVelocity<'g>>,
+}
+
+impl<'g> Tree<'g> {
+    /// −½ k (x − x_0)² of each spring.
+    pub(crate) fn springs(&self) -> impl Iterator<Item = Expr<'g>> {
+        let energy = |(drive, x, _): (Drive<'g>, Expr<'g>, Expr<'g>)| {
+            let (stiffness, rest) = drive.spring?;
+            Some(-(stiffness * (x - rest).square() / 2.0))
+        };
+        self.drives().filter_map(energy)
+    }
+
+    /// The forces of the dampers on the quasi-velocities `eta`: −d ẋ ∂ẋ/∂η_s.
+    pub(crate) fn dampers(&self, eta: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        let mut forces = vec![Expr::ZERO; eta.len()];
+        for (drive, _, rate) in self.drives().filter(|(drive, ..)| !drive.damping.is_zero()) {
+            for (force, ratio) in forces.iter_mut().zip(self.graph.gradient(rate, eta)) {
+                *force -= drive.damping * rate * ratio;
+            }
+        }
+        forces
+    }
 }
 
 impl<'g> Motions<'_, 'g> {
@@ -50,6 +74,7 @@ impl<'g> Motions<'_, 'g> {
                 in_lagrangian: Vec::new(),
             });
         }
+        kinetic.extend(self.tree.drives().map(|(drive, _, eta)| drive.armature * eta.square() / 2.0));
         let forces = graph.substitute(&graph.gradient(graph.sum(power), eta), &values);
         TreeShare { kinetic, weight, forces, velocities }
     }

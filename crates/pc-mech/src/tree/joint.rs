@@ -32,6 +32,41 @@ pub struct Joint<'g> {
     pub(crate) names: Option<(Vec<String>, Vec<String>)>,
     /// The joint whose movement this one repeats.
     pub(crate) follows: Option<Follows<'g>>,
+    /// What acts on the coordinate of a joint that has exactly one.
+    pub(crate) drive: Drive<'g>,
+}
+
+/// The drive of a joint with the coordinate x: a rotor, a spring and a damper.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Drive<'g> {
+    /// The inertia J of ½ J x'².
+    pub(crate) armature: Expr<'g>,
+    /// The stiffness k and the place x_0 at rest, of the potential energy ½ k (x − x_0)².
+    pub(crate) spring: Option<(Expr<'g>, Expr<'g>)>,
+    /// The coefficient d of the force −d x'.
+    pub(crate) damping: Expr<'g>,
+}
+
+impl<'g> Drive<'g> {
+    const NONE: Drive<'static> = Drive { armature: Expr::ZERO, spring: None, damping: Expr::ZERO };
+
+    /// Its first part, named, if it has any.
+    pub(crate) fn part(&self) -> Option<&'static str> {
+        match self {
+            Drive { armature, .. } if !armature.is_zero() => Some("armature"),
+            Drive { spring: Some(_), .. } => Some("spring"),
+            Drive { damping, .. } if !damping.is_zero() => Some("damping"),
+            _ => None,
+        }
+    }
+
+    fn map<'n>(&self, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> Drive<'n> {
+        Drive {
+            armature: put(self.armature),
+            spring: self.spring.map(|(stiffness, rest)| (put(stiffness), put(rest))),
+            damping: put(self.damping),
+        }
+    }
 }
 
 /// How a joint with one coordinate moves with that of another body: x = ratio · x of the other + offset.
@@ -57,7 +92,7 @@ pub(crate) enum Kind<'g> {
 
 impl<'g> Joint<'g> {
     fn of(kind: Kind<'g>) -> Joint<'g> {
-        Joint { kind, place: ZERO, rotation: unit(), names: None, follows: None }
+        Joint { kind, place: ZERO, rotation: unit(), names: None, follows: None, drive: Drive::NONE }
     }
 
     /// A joint that holds the body fixed.
@@ -153,6 +188,27 @@ impl<'g> Joint<'g> {
         Joint { follows: Some(follows), ..self }
     }
 
+    /// The same joint, revolute, prismatic or screw, with a rotor that turns with it: its coordinate x adds
+    /// ½ J x'² to the kinetic energy. J is the moment of inertia of the rotor times the square of the gear's ratio,
+    /// and moves only with the joint.
+    #[must_use]
+    pub fn armature(self, inertia: impl Into<Expr<'g>>) -> Joint<'g> {
+        Joint { drive: Drive { armature: inertia.into(), ..self.drive }, ..self }
+    }
+
+    /// The same joint, revolute, prismatic or screw, with a spring: its coordinate x adds ½ k (x − x_0)² to the
+    /// potential energy.
+    #[must_use]
+    pub fn spring(self, stiffness: impl Into<Expr<'g>>, rest: impl Into<Expr<'g>>) -> Joint<'g> {
+        Joint { drive: Drive { spring: Some((stiffness.into(), rest.into())), ..self.drive }, ..self }
+    }
+
+    /// The same joint, revolute, prismatic or screw, with a damper: the force −d x' on its coordinate x.
+    #[must_use]
+    pub fn damping(self, coefficient: impl Into<Expr<'g>>) -> Joint<'g> {
+        Joint { drive: Drive { damping: coefficient.into(), ..self.drive }, ..self }
+    }
+
     /// The joint with each expression replaced.
     pub(crate) fn map<'n>(&self, put: &impl Fn(Expr<'g>) -> Expr<'n>) -> Joint<'n> {
         let follows = self.follows.as_ref().map(|Follows { body, ratio, offset }| Follows {
@@ -166,6 +222,7 @@ impl<'g> Joint<'g> {
             place: self.place.map(put),
             rotation: self.rotation.map(|row| row.map(put)),
             names: self.names.clone(),
+            drive: self.drive.map(put),
         }
     }
 

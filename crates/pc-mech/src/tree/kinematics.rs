@@ -96,6 +96,8 @@ pub struct JointMotion<'g> {
     pub velocity: [Expr<'g>; 3],
     /// The quasi-velocities of the joint; none for a joint that follows another.
     pub quasi_velocities: Vec<Expr<'g>>,
+    /// The armature of the joint, an inertia that resists the quasi-velocity by which it moves.
+    pub armature: Expr<'g>,
 }
 
 impl<'g> Tree<'g> {
@@ -132,6 +134,10 @@ impl<'g> Tree<'g> {
             angular_velocity: apply_transpose(graph, &stand.rotation, &moved.omega),
             velocity: apply_transpose(graph, &stand.rotation, &moved.velocity),
             quasi_velocities: links.iter().flat_map(Link::quasi_velocities).collect(),
+            armature: graph.sum(links.iter().map(|link| {
+                let ratio = link.follows.map_or(Expr::ONE, |(_, ratio)| ratio);
+                link.armature * ratio.square()
+            })),
         })
     }
 }

@@ -17,6 +17,8 @@ pub(crate) struct Link<'g> {
     /// The link whose quasi-velocity moves this one, and the ratio of the velocities, for a link that has
     /// none of its own.
     pub(crate) follows: Option<(usize, Expr<'g>)>,
+    /// The inertia J of ½ J times the square of its rate, in addition to that of bodies.
+    pub(crate) armature: Expr<'g>,
 }
 
 /// The movement of a link. An axis is the index of a coordinate axis; what moves it is x, then η, or multiples of
@@ -59,6 +61,7 @@ impl<'g> Link<'g> {
             rotation: self.rotation.map(|row| row.map(put)),
             hinge: self.hinge.map(put),
             follows: self.follows.map(|(link, ratio)| (link, put(ratio))),
+            armature: put(self.armature),
         }
     }
 
@@ -74,6 +77,15 @@ impl<'g> Link<'g> {
 }
 
 impl<'g> Hinge<'g> {
+    /// The coordinate of a movement that has exactly one, and its rate: x and η, or what they follow.
+    pub(crate) fn single(&self) -> Option<(Expr<'g>, Expr<'g>)> {
+        match self {
+            Hinge::Turn { angle, rate, .. } => Some((*angle, *rate)),
+            Hinge::Slide { way, rate, .. } => Some((*way, *rate)),
+            Hinge::Ball { .. } | Hinge::Free { .. } => None,
+        }
+    }
+
     fn coordinates(&self) -> Vec<Expr<'g>> {
         match self {
             Hinge::Turn { angle, .. } => vec![*angle],

@@ -124,6 +124,7 @@ impl<'g> Tree<'g> {
                 ("inertia", body.inertia.matrix().entries().to_vec()),
                 ("place of the joint", body.joint.place.to_vec()),
                 ("rotation of the joint", body.joint.rotation.concat()),
+                ("armature of the joint", vec![body.joint.drive.armature]),
                 ("ratio of the joint", body.joint.follows.iter().map(|follows| follows.ratio).collect()),
                 ("offset of the joint", body.joint.follows.iter().map(|follows| follows.offset).collect()),
             ];

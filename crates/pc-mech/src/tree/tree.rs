@@ -7,7 +7,7 @@ use pc_expr::{Expr, Graph, Number};
 
 use crate::error::{MechError, TreeError};
 use crate::tree::body::TreeBody;
-use crate::tree::joint::{Joint, Kind};
+use crate::tree::joint::{Drive, Joint, Kind};
 use crate::tree::link::{Hinge, Link};
 use crate::tree::spatial::{
     Tensor, Vector, ZERO, add, apply, congruent, entries_of, product, transpose, unit,
@@ -75,7 +75,8 @@ impl<'g> Tree<'g> {
     ///
     /// # Errors
     /// [`TreeError`] for two bodies with the same name, a parent that does not exist, parents in a circle, an
-    /// axis without a direction, or a list of names that does not fit its joint;
+    /// axis without a direction, a list of names that does not fit its joint, or a joint without exactly one
+    /// coordinate that follows another or has an armature, a spring or a damping;
     /// [`BodyError`](crate::BodyError) for a matrix that is not a rotation.
     pub fn new(
         graph: &'g Graph,
@@ -95,6 +96,14 @@ impl<'g> Tree<'g> {
         for body in 0..tree.bodies.len() {
             if let Some(followed) = tree.followed(body)? {
                 tree.links[own[body].start].follows = Some((own[followed.body].start, followed.ratio));
+            }
+            let TreeBody { name, joint: Joint { kind, drive, .. }, .. } = &tree.bodies[body];
+            match drive.part() {
+                Some(what) if !kind.is_single() => {
+                    return Err(TreeError::NoDrive { body: name.clone(), what }.into());
+                }
+                Some(_) => tree.links[own[body].start].armature = drive.armature,
+                None => {}
             }
         }
         tree.own = own;
@@ -132,6 +141,14 @@ impl<'g> Tree<'g> {
         self.links[links].iter().flat_map(Link::coordinates).collect()
     }
 
+    /// The drives of joints with one coordinate, each with x and η of its joint.
+    pub(crate) fn drives(&self) -> impl Iterator<Item = (Drive<'g>, Expr<'g>, Expr<'g>)> {
+        self.bodies.iter().zip(&self.own).filter_map(|(body, own)| {
+            let (x, eta) = self.links.get(own.start).filter(|_| own.len() == 1)?.hinge.single()?;
+            Some((body.joint.drive, x, eta))
+        })
+    }
+
     /// The index of a body in the order of declaration.
     pub(crate) fn place_of(&self, body: &str) -> Option<usize> {
         self.bodies.iter().position(|known| known.name == body)
@@ -165,7 +182,14 @@ impl<'g> Tree<'g> {
         let mut push = |rotation: Tensor<'g>, hinge: Hinge<'g>| {
             let on =
                 if links.is_empty() { (parent.link, place) } else { (Some(first + links.len() - 1), ZERO) };
-            links.push(Link { parent: on.0, place: on.1, rotation, hinge, follows: None });
+            links.push(Link {
+                parent: on.0,
+                place: on.1,
+                rotation,
+                hinge,
+                follows: None,
+                armature: Expr::ZERO,
+            });
             stand = Stand { link: Some(first + links.len() - 1), place: ZERO, rotation: unit() };
         };
         let mut matrix = unit();
@@ -284,8 +308,8 @@ impl<'g> Tree<'g> {
             offset += ratio * follows.offset;
             ratio *= follows.ratio;
             line.push(next);
-            if line[..line.len() - 1].contains(&next) {
-                let bodies = line.iter().map(|&body| self.bodies[body].name.clone()).collect();
+            if let Some(first) = line[..line.len() - 1].iter().position(|&known| known == next) {
+                let bodies = line[first..].iter().map(|&body| self.bodies[body].name.clone()).collect();
                 return Err(TreeError::FollowedCircle { bodies });
             }
         }

@@ -23,6 +23,8 @@ struct Hung {
     spread: [[f64; 3]; 3],
     /// The body whose joint moves this one, with ratio and offset.
     follows: Option<(usize, f64, f64)>,
+    /// Armature, stiffness, place at rest and damping of the joint.
+    drive: Option<[f64; 4]>,
 }
 
 const KINDS: usize = 9;
@@ -63,6 +65,7 @@ fn body(index: usize) -> impl Strategy<Value = Hung> {
             centre,
             spread,
             follows: None,
+            drive: None,
         },
     )
 }
@@ -150,6 +153,12 @@ impl Hung {
             Some((body, ratio, offset)) => joint.following(format!("b{body}"), ratio, offset),
             None => joint,
         };
+        let joint = match self.drive {
+            Some([armature, stiffness, rest, damping]) => {
+                joint.armature(armature).spring(stiffness, rest).damping(damping)
+            }
+            None => joint,
+        };
         let rows = self.tilted();
         joint.at(self.place).rotated(&Matrix::from_fn(3, 3, |i, j| rows[i][j]))
     }
@@ -223,12 +232,21 @@ fn hung<'g>(graph: &'g Graph, bodies: &[Hung], loaded: bool) -> System<'g> {
 fn systems<'g>(graph: &'g Graph, bodies: &[Hung]) -> (System<'g>, System<'g>) {
     let tree = tree(graph, bodies, true);
     let start = || started(graph, &tree, true);
-    let x = tree.coordinates();
+    let (x, eta) = (tree.coordinates(), tree.quasi_velocities());
     let mut by_hand = start();
     let mut placed: Vec<([Expr<'g>; 3], Rows<'g>)> = Vec::new();
-    let starts: Vec<usize> =
-        (0..bodies.len()).map(|i| bodies[..i].iter().map(|body| body.sizes().0).sum()).collect();
-    for (body, &start) in bodies.iter().zip(&starts) {
+    let before = |i: usize, size: fn(&Hung) -> usize| -> usize { bodies[..i].iter().map(size).sum() };
+    let starts: Vec<usize> = (0..bodies.len()).map(|i| before(i, |body| body.sizes().0)).collect();
+    for (i, (body, &start)) in bodies.iter().zip(&starts).enumerate() {
+        if let Some([armature, stiffness, rest, damping]) = body.drive {
+            let (followed, ratio, offset) = body.follows.unwrap_or((i, 1.0, 0.0));
+            let moving = before(followed, |body| body.sizes().1);
+            let (x, rate) = (ratio * x[starts[followed]] + offset, ratio * eta[moving]);
+            by_hand = by_hand
+                .kinetic(|_, _, _| armature * rate.square() / 2.0)
+                .potential(|_, _, _| stiffness * (x - rest).square() / 2.0)
+                .dissipation(|_, _, _| damping * rate.square() / 2.0);
+        }
         let (place, rotation) = body.parent.map_or(([Expr::ZERO; 3], identity()), |parent| placed[parent]);
         let (way, turned) = match body.follows {
             Some((followed, ratio, offset)) => body.moved(&[ratio * x[starts[followed]] + offset]),
@@ -341,7 +359,8 @@ fn along_spheres(bodies: &[Hung], y: &[f64], numbers: impl Iterator<Item = f64>)
     direction
 }
 
-/// Random trees in which most joints with one coordinate follow the first such joint, or the last.
+/// Random trees in which most joints with one coordinate follow the first such joint, or the last, and half of
+/// them have drives.
 fn geared(cases: u32, count: usize, check: impl Fn(&[Hung], &[f64])) {
     trees(cases, count, |bodies, numbers| {
         let mut bodies = bodies.to_vec();
@@ -353,6 +372,9 @@ fn geared(cases: u32, count: usize, check: impl Fn(&[Hung], &[f64])) {
         }
         if others.is_empty() {
             bodies[*first].follows = Some((*last, -0.8, 0.1));
+        }
+        for (n, &i) in single.iter().enumerate().filter(|(n, _)| (n + count) % 2 == 0) {
+            bodies[i].drive = Some([0.4, 3.0, -0.1 * n as f64, 0.2]);
         }
         check(&bodies, numbers);
     });
@@ -397,29 +419,36 @@ fn forces_on_geared_joints_are_those_of_their_accelerations() {
 
 #[test]
 fn joint_after_joint_is_the_whole_tree_at_once() {
-    trees(12, 3, |bodies, numbers| {
-        let graph = Graph::new();
-        let system = hung(&graph, bodies, true);
-        let equations = system.poincare().unwrap();
-        let y = state(bodies, numbers);
-        let direction = along_spheres(bodies, &y, numbers.iter().rev().copied());
-        let derivatives = |elimination: TreeElimination| {
-            let options = CompileOptions::default().jvp(true).elimination(elimination);
-            let mut motion = equations.compile_for(options).unwrap();
-            let n = y.len();
-            let (mut jacobian, mut product) = (vec![0.0; n * n], vec![0.0; n]);
-            motion.jacobian(0.0, &y, &mut jacobian).unwrap();
-            motion.jvp(0.0, &y, &direction, &mut product).unwrap();
-            let by_columns =
-                (0..n).map(|i| (0..n).map(|j| jacobian[j * n + i] * direction[j]).sum()).collect();
-            (motion.rates(0.0, &y).unwrap(), product, by_columns)
-        };
-        let (by_joints, whole) =
-            (derivatives(TreeElimination::ByJoints), derivatives(TreeElimination::Whole));
-        assert!(difference(&by_joints.0, &whole.0) < ROUNDING);
-        let products: [Vec<f64>; 4] = [by_joints.1, by_joints.2, whole.1, whole.2];
-        assert!(products.iter().all(|product| difference(product, &products[0]) < ROUNDING));
-    });
+    trees(12, 3, derivatives_agree);
+}
+
+#[test]
+fn joint_after_joint_is_the_whole_geared_tree_at_once() {
+    geared(12, 4, derivatives_agree);
+    geared(12, 5, derivatives_agree);
+}
+
+/// Rates, Jacobian and its products by the recursion and by the whole mass matrix.
+fn derivatives_agree(bodies: &[Hung], numbers: &[f64]) {
+    let graph = Graph::new();
+    let system = hung(&graph, bodies, true);
+    let equations = system.poincare().unwrap();
+    let y = state(bodies, numbers);
+    let direction = along_spheres(bodies, &y, numbers.iter().rev().copied());
+    let derivatives = |elimination: TreeElimination| {
+        let options = CompileOptions::default().jvp(true).elimination(elimination);
+        let mut motion = equations.compile_for(options).unwrap();
+        let n = y.len();
+        let (mut jacobian, mut product) = (vec![0.0; n * n], vec![0.0; n]);
+        motion.jacobian(0.0, &y, &mut jacobian).unwrap();
+        motion.jvp(0.0, &y, &direction, &mut product).unwrap();
+        let by_columns = (0..n).map(|i| (0..n).map(|j| jacobian[j * n + i] * direction[j]).sum()).collect();
+        (motion.rates(0.0, &y).unwrap(), product, by_columns)
+    };
+    let (by_joints, whole) = (derivatives(TreeElimination::ByJoints), derivatives(TreeElimination::Whole));
+    assert!(difference(&by_joints.0, &whole.0) < ROUNDING);
+    let products: [Vec<f64>; 4] = [by_joints.1, by_joints.2, whole.1, whole.2];
+    assert!(products.iter().all(|product| difference(product, &products[0]) < ROUNDING));
 }
 
 /// Along an axis with three components the constants of the equations are rounded; with eleven unknowns an
@@ -441,6 +470,7 @@ fn the_jacobian_of_a_chain_with_oblique_axes_is_that_of_its_rates() {
                 centre: [0.13, -0.21, 0.34 - 0.2 * i as f64],
                 spread: [[0.5, 0.1, 0.2], [-0.3, 0.4, 0.1], [0.1, 0.2, 0.6]],
                 follows: None,
+                drive: None,
             })
             .collect();
         let graph = Graph::new();
@@ -659,6 +689,7 @@ fn a_tree_without_its_cyclic_coordinates_moves_as_before() {
             centre: [0.1, 0.2, -0.3],
             spread: [[0.5, 0.0, 0.1], [0.0, 0.4, 0.0], [0.1, 0.2, 0.6]],
             follows: None,
+            drive: None,
         })
         .collect();
     let system = hung(&graph, &bodies, false);
@@ -697,6 +728,25 @@ fn invalid_trees_are_refused() {
     assert_eq!(
         error(vec![TreeBody::new("a", named)]),
         "the joint of `a` has 4 coordinates; 1 names are given"
+    );
+    let following = |name: &str, other: &str| {
+        TreeBody::new(name, Joint::revolute([0.0, 0.0, 1.0]).following(other, 2.0, 0.0))
+    };
+    assert_eq!(
+        error(vec![following("a", "b")]),
+        "the joint of `a` follows that of `b`, but there is no body of that name"
+    );
+    assert_eq!(
+        error(vec![following("a", "b"), following("b", "c"), following("c", "b")]),
+        "joints follow each other in a circle: b, c, b"
+    );
+    assert_eq!(
+        error(vec![following("a", "b"), TreeBody::new("b", Joint::spherical())]),
+        "the joint of `a` cannot follow that of `b`: both must have exactly one coordinate"
+    );
+    assert_eq!(
+        error(vec![TreeBody::new("a", Joint::planar([0.0, 0.0, 1.0]).damping(0.1))]),
+        "the joint of `a` cannot have the damping given to it: it does not have exactly one coordinate"
     );
     let tree = Tree::new(&graph, [body("a").mass(1)]).unwrap();
     let outcome = System::builder(&graph).coordinates(["b"]).tree(tree).build();

@@ -60,6 +60,21 @@ pub struct Joint {
     pub quasi_velocities: Vec<Name>,
     /// The joint whose motion it repeats, for a joint without coordinates of its own.
     pub follows: Option<Following>,
+    /// What acts on its coordinate, for a joint that has exactly one.
+    pub drive: Drive,
+}
+
+/// The rotor, spring and damper of a joint with the coordinate x.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Drive {
+    /// The inertia J of ½ J x'².
+    pub armature: Option<Expression>,
+    /// The stiffness k of ½ k (x − x_0)².
+    pub stiffness: Option<Expression>,
+    /// x_0; 0 if left out.
+    pub rest: Option<Expression>,
+    /// The coefficient d of the force −d x'.
+    pub damping: Option<Expression>,
 }
 
 /// How a joint with one coordinate is geared to that of another body: x = ratio · x of the other + offset.

@@ -7,7 +7,9 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::document::bodies::{body, inertia};
 use crate::document::contents::Body;
 use crate::document::expression::Name;
-use crate::document::joints::{Following, Joint, JointKind, JointRotation, Point, TreeBody, WORLD, prime};
+use crate::document::joints::{
+    Drive, Following, Joint, JointKind, JointRotation, Point, TreeBody, WORLD, prime,
+};
 
 const KEYS: &[&str] = &["parent", "joint", "mass", "center", "inertia", "force", "torque"];
 const JOINT_KEYS: &[&str] = &[
@@ -23,6 +25,10 @@ const JOINT_KEYS: &[&str] = &[
     "follows",
     "ratio",
     "offset",
+    "armature",
+    "stiffness",
+    "rest",
+    "damping",
 ];
 pub(super) const JOINT: &str = "joint = { kind = \"revolute\", axis = [0, 0, 1], at = [0, 0, 0] }";
 const AXIS: &str = "axis = [0, 0, 1]";
@@ -97,6 +103,7 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
     let (mut kind, mut axes, mut pitch, mut at, mut rotation) = (None, None, None, None, None);
     let (mut coordinates, mut quasi_velocities) = (None, None);
     let (mut follows, mut ratio, mut offset) = (None, None, None);
+    let (mut drive, mut driven) = (Drive::default(), Vec::new());
     for part in table.items() {
         match part.key() {
             "kind" => kind = Some(part.choice(JointKind::ALL)?),
@@ -123,6 +130,16 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
             "follows" => follows = Some(part),
             "ratio" => ratio = Some(part),
             "offset" => offset = Some(part),
+            "armature" | "stiffness" | "rest" | "damping" => {
+                let value = Some(part.expression()?);
+                match part.key() {
+                    "armature" => drive.armature = value,
+                    "stiffness" => drive.stiffness = value,
+                    "rest" => drive.rest = value,
+                    _ => drive.damping = value,
+                }
+                driven.push(part);
+            }
             _ => return Err(part.unknown(JOINT_KEYS)),
         }
     }
@@ -145,12 +162,32 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
         (_, Some((part, _))) => return Err(without_effect(&part, kind)),
         (_, None) => None,
     };
+    if let Some(part) =
+        driven.iter().find(|part| !kind.is_single() || part.key() == "rest" && drive.stiffness.is_none())
+    {
+        if !kind.is_single() {
+            return Err(without_effect(part, kind));
+        }
+        let (key, example) = (part.key().to_owned(), "stiffness = 10.0");
+        return Err(part.key_error(ErrorKind::NoEffect { key, without: "stiffness", example }));
+    }
     let coordinates = names(coordinates.as_ref(), body, kind.coordinates(body.key()))?;
     let gear = Gear { follows, ratio, offset };
     if let Some(follows) = gear.following(kind, &coordinates, quasi_velocities.as_ref())? {
         let (coordinates, quasi_velocities) = (Vec::new(), Vec::new());
         let (place, follows) = (item.place(), Some(follows));
-        return Ok(Joint { place, kind, axes, pitch, at, rotation, coordinates, quasi_velocities, follows });
+        return Ok(Joint {
+            place,
+            kind,
+            axes,
+            pitch,
+            at,
+            rotation,
+            coordinates,
+            quasi_velocities,
+            follows,
+            drive,
+        });
     }
     let own: Vec<String> = coordinates.iter().map(|name| name.text.clone()).collect();
     let usual = kind.quasi_velocities(body.key(), &own);
@@ -162,7 +199,7 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
         given => names(given.as_ref(), body, usual)?,
     };
     let (place, follows) = (item.place(), None);
-    Ok(Joint { place, kind, axes, pitch, at, rotation, coordinates, quasi_velocities, follows })
+    Ok(Joint { place, kind, axes, pitch, at, rotation, coordinates, quasi_velocities, follows, drive })
 }
 
 /// The entries of a joint that gear it to another.

@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::diagnostics::source::Source;
 use crate::import::error::UrdfError;
 use crate::import::names::Names;
-use crate::import::robot::{Inertial, Joint, Kind, Link, Mimic, Pose, Robot};
+use crate::import::robot::{Inertial, Joint, Kind, Link, Pose, Robot};
 use crate::import::urdf;
 
 /// The text of the model of a robot in URDF, and a line for each kind of element that was left out.
@@ -21,8 +21,8 @@ pub fn model_of_urdf(source: &Source, floats: bool) -> Result<(String, Vec<Strin
     let robot = urdf::read(source)?;
     let tree = Tree::of(source, &robot)?;
     tree.check_masses()?;
-    let starts = tree.starts()?;
-    Ok((tree.text(floats, &starts), tree.left_out()))
+    tree.check_mimics()?;
+    Ok((tree.text(floats), tree.left_out()))
 }
 
 /// The links of a robot in the order of a tree.
@@ -128,23 +128,18 @@ impl<'a> Tree<'a> {
         Ok(())
     }
 
-    /// The start values of joints that mimic others; all other joints start at 0.
-    fn starts(&self) -> Result<Vec<(&'a Joint, f64)>, UrdfError> {
-        let mut starts = Vec::new();
-        for first in
-            self.robot.joints.iter().filter(|joint| joint.mimic.is_some() && joint.kind != Kind::Fixed)
-        {
-            // x = m (m' (… ) + o') + o
-            let (mut factor, mut start, mut joint) = (1.0, 0.0, first);
+    /// Checks that each joint that mimics another mimics one that has exactly one coordinate, and none itself.
+    fn check_mimics(&self) -> Result<(), UrdfError> {
+        let mimics = |joint: &&Joint| joint.mimic.is_some() && joint.kind != Kind::Fixed;
+        for first in self.robot.joints.iter().filter(mimics) {
+            let mut joint = first;
             let mut seen: Vec<&str> = vec![&joint.name];
             while let Some(mimic) = &joint.mimic {
-                start += factor * mimic.offset;
-                factor *= mimic.multiplier;
                 let entry = format!("<joint {}>", joint.name);
                 let fault = |message: String, help: &str| {
                     UrdfError::at(self.source, joint.span.clone(), entry.clone(), message, help)
                 };
-                let followed = self.robot.joints.iter().find(|known| known.name == mimic.joint);
+                let followed = self.joint_named(&mimic.joint);
                 let followed = followed.ok_or_else(|| {
                     fault(format!("it mimics `{}`, which is not there", mimic.joint), "name another joint")
                 })?;
@@ -159,9 +154,12 @@ impl<'a> Tree<'a> {
                 seen.push(&followed.name);
                 joint = followed;
             }
-            starts.push((first, start));
         }
-        Ok(starts)
+        Ok(())
+    }
+
+    fn joint_named(&self, name: &str) -> Option<&'a Joint> {
+        self.robot.joints.iter().find(|known| known.name == name)
     }
 
     fn left_out(&self) -> Vec<String> {
@@ -181,7 +179,7 @@ impl<'a> Tree<'a> {
         elements.chain(dry).chain(still).collect()
     }
 
-    fn text(&self, floats: bool, starts: &[(&Joint, f64)]) -> String {
+    fn text(&self, floats: bool) -> String {
         let mut text = String::new();
         let mut line = |line: String| {
             text += &line;
@@ -201,39 +199,13 @@ impl<'a> Tree<'a> {
             }
         }
         line("\n[gravity]\nacceleration = [0, 0, \"-g\"]".into());
-        let apart: Vec<_> = starts.iter().filter(|(_, start)| *start != 0.0).collect();
-        if !apart.is_empty() {
-            line("\n[coordinates]".into());
-            for (joint, start) in apart {
-                let x = self.names.coordinate(joint).unwrap_or_default(); // what follows another joint has one
-                line(format!("{x} = {start:?}"));
-            }
-        }
         for (link, joint) in &self.order {
             line(self.body(link, *joint, floats));
         }
-        if !starts.is_empty() {
-            line("\n[constraints]".into());
-        }
-        for (joint, _) in starts {
-            let followed = |mimic: &Mimic| self.robot.joints.iter().find(|joint| joint.name == mimic.joint);
-            let (Some(mimic), Some(own)) = (&joint.mimic, self.names.coordinate(joint)) else { continue };
-            let Some(other) = followed(mimic).and_then(|other| self.names.coordinate(other)) else {
-                continue;
-            };
-            let factor = match mimic.multiplier {
-                1.0 => String::new(),
-                multiplier => format!("({multiplier:?})*"),
-            };
-            let offset = match mimic.offset {
-                0.0 => String::new(),
-                offset if offset < 0.0 => format!(" + {:?}", -offset),
-                offset => format!(" - {offset:?}"),
-            };
-            line(format!("mimic_{own} = \"{own} - {factor}{other}{offset}\""));
-        }
+        // Joints with one coordinate have entries for their dampings.
+        let several = self.robot.joints.iter().filter(|joint| !joint.kind.is_single());
         let damped: Vec<(&Joint, &str)> =
-            self.robot.joints.iter().filter_map(|joint| Some((joint, self.names.damping(joint)?))).collect();
+            several.filter_map(|joint| Some((joint, self.names.damping(joint)?))).collect();
         if !damped.is_empty() {
             line("\n[forces]".into());
         }
@@ -302,6 +274,21 @@ impl<'a> Tree<'a> {
             turns.map(|(axis, angle)| format!("[\"{axis}\", {}]", self::angle(angle))).collect();
         if !turns.is_empty() {
             let _ = write!(text, ", turns = [{}]", turns.join(", "));
+        }
+        if let Some((followed, mimic)) =
+            joint.mimic.as_ref().and_then(|mimic| Some((self.joint_named(&mimic.joint)?, mimic)))
+        {
+            // Writing to a string cannot fail.
+            let _ = write!(text, ", follows = {}", quoted(self.names.body(&followed.child)));
+            if mimic.multiplier != 1.0 {
+                let _ = write!(text, ", ratio = {:?}", mimic.multiplier);
+            }
+            if mimic.offset != 0.0 {
+                let _ = write!(text, ", offset = {:?}", mimic.offset);
+            }
+        }
+        if let Some(damping) = self.names.damping(joint).filter(|_| joint.kind.is_single()) {
+            let _ = write!(text, ", damping = \"{damping}\"");
         }
         match self.names.coordinate(joint) {
             Some(x) if x != self.names.body(&joint.child) => {

@@ -90,6 +90,7 @@ impl<'g> Scope<'g, '_> {
             }
             None => made,
         };
+        let made = self.driven(joint, made)?;
         let made = match &joint.at {
             Some(at) => made.at(self.constants(at)?),
             None => made,
@@ -98,6 +99,25 @@ impl<'g> Scope<'g, '_> {
             None => made,
             Some(rotation) => made.rotated(&self.constant_rotation(rotation)?),
         })
+    }
+
+    /// The joint with its rotor, spring and damper.
+    fn driven(&mut self, joint: &document::Joint, made: Joint<'g>) -> Result<Joint<'g>, ModelError> {
+        let document::Drive { armature, stiffness, rest, damping } = &joint.drive;
+        let mut constant = |part: &Option<Expression>| -> Result<Option<Expr<'g>>, ModelError> {
+            part.as_ref().map(|part| self.resolve(part, Stage::Joint)).transpose()
+        };
+        let mut made = made;
+        if let Some(armature) = constant(armature)? {
+            made = made.armature(armature);
+        }
+        if let Some(stiffness) = constant(stiffness)? {
+            made = made.spring(stiffness, constant(rest)?.unwrap_or(Expr::ZERO));
+        }
+        if let Some(damping) = constant(damping)? {
+            made = made.damping(damping);
+        }
+        Ok(made)
     }
 
     fn constant_rotation(&mut self, rotation: &JointRotation) -> Result<Matrix<Expr<'g>>, ModelError> {

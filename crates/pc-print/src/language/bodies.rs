@@ -46,10 +46,30 @@ const LAWS: [(&str, &str, &str); 6] = [
     ),
 ];
 
+/// The last of these laws where a quasi-velocity moves several joints, or a joint has an armature.
+const OF_SEVERAL: (&str, &str, &str) = (
+    "Equation of each quasi-velocity η, the sum over the bodies whose joints it moves, J being armatures",
+    "Σ (n · ∂ω_r/∂η + f · ∂v_r/∂η + J η') = Q_η",
+    r"\sum \Bigl(n \cdot \frac{\partial \omega_{r}}{\partial \eta} + f \cdot \frac{\partial v_{r}}{\partial \eta} + J \dot\eta\Bigr) &= Q_{\eta}",
+);
+
 /// The bodies of a tree in the graph of a page, and the acceleration of gravity along the axes of the world.
 pub(crate) struct TreeOnPage<'p> {
     bodies: Vec<BodyOnPage<'p>>,
     gravity: [Expr<'p>; 3],
+    /// Whether a quasi-velocity moves several joints.
+    is_geared: bool,
+}
+
+impl TreeOnPage<'_> {
+    fn laws(&self) -> [(&'static str, &'static str, &'static str); 6] {
+        let [laws @ .., of_joint] = LAWS;
+        let of_several = self.is_geared || self.bodies.iter().any(|body| !body.armature.is_zero());
+        let last = if of_several { OF_SEVERAL } else { of_joint };
+        let mut all = [last; 6];
+        all[..5].copy_from_slice(&laws);
+        all
+    }
 }
 
 /// A body with the data that enter its equations.
@@ -60,6 +80,7 @@ struct BodyOnPage<'p> {
     vectors: Vec<(&'static str, &'static str, [Expr<'p>; 3])>,
     matrices: Vec<(&'static str, &'static str, Matrix<Expr<'p>>)>,
     mass: Expr<'p>,
+    armature: Expr<'p>,
     /// Each η with its Q_η, which does not include loads on bodies.
     forces: Vec<(Expr<'p>, Expr<'p>)>,
     kinematics: Vec<(Expr<'p>, Expr<'p>)>,
@@ -99,11 +120,16 @@ pub(crate) fn tree_on_page<'p>(system: &System<'_>, tree: &Tree<'_>, paper: &'p 
             ],
             matrices: vec![("R", "rotation", joint.rotation.map(one)), ("I", "inertia", inertia.map(one))],
             mass: one(mass),
+            armature: one(joint.armature),
             forces: joint.quasi_velocities.iter().filter_map(force_of).collect(),
             kinematics: of_joint.iter().filter_map(kinematic).collect(),
         })
     };
-    TreeOnPage { bodies: tree.bodies().iter().filter_map(body).collect(), gravity: all(system.gravity()) }
+    TreeOnPage {
+        bodies: tree.bodies().iter().filter_map(body).collect(),
+        gravity: all(system.gravity()),
+        is_geared: tree.bodies().iter().any(|body| body.followed().is_some()),
+    }
 }
 
 fn vanishes(vector: &[Expr<'_>; 3]) -> bool {
@@ -115,7 +141,7 @@ pub(crate) fn text(heading: &str, tree: &TreeOnPage<'_>, operations: &Operations
     let mut page = crate::language::text::underlined(heading);
     page +=
         "Written from body to body: as a whole the equations would be longer than a page.\n\nFor each body\n";
-    for (about, law, _) in LAWS {
+    for (about, law, _) in tree.laws() {
         if !about.is_empty() {
             page += &format!("  {about}\n");
         }
@@ -147,6 +173,9 @@ pub(crate) fn text(heading: &str, tree: &TreeOnPage<'_>, operations: &Operations
             put(letter, format!("({})", rows.join("; ")));
         }
         put("m", written(&body.mass));
+        if !body.armature.is_zero() {
+            put("J", written(&body.armature));
+        }
         for (letter, _, vector) in body.vectors.iter().filter(|(.., vector)| !vanishes(vector)) {
             put(letter, format!("({})", vector.iter().map(written).collect::<Vec<_>>().join(", ")));
         }
@@ -166,7 +195,7 @@ pub(crate) fn text(heading: &str, tree: &TreeOnPage<'_>, operations: &Operations
 pub(crate) fn latex(heading: &str, tree: &TreeOnPage<'_>) -> String {
     let mut page =
         format!("% {heading}, from body to body (needs amsmath)\n\n% For each body\n\\begin{{align*}}\n");
-    page += &LAWS.map(|(_, _, law)| law).join(" \\\\\n");
+    page += &tree.laws().map(|(_, _, law)| law).join(" \\\\\n");
     let gravity: Vec<String> = tree.gravity.iter().map(|g| g.display(Style::Latex)).collect();
     let _ = write!(page, " \\\\\ng &= ({})", gravity.join(", \\; ")); // writing to a string cannot fail
     page += "\n\\end{align*}\n";
@@ -183,6 +212,9 @@ pub(crate) fn latex(heading: &str, tree: &TreeOnPage<'_>) -> String {
             lines.push(format!("{letter} &= \\begin{{pmatrix}} {} \\end{{pmatrix}}", rows.join(" \\\\ ")));
         }
         lines.push(format!("m &= {}", set(&body.mass)));
+        if !body.armature.is_zero() {
+            lines.push(format!("J &= {}", set(&body.armature)));
+        }
         for (letter, _, vector) in body.vectors.iter().filter(|(.., vector)| !vanishes(vector)) {
             let letter = letter.replace("ω_r", "\\omega_{r}").replace("v_r", "v_{r}");
             let components = vector.iter().map(set).collect::<Vec<_>>().join(", \\; ");
@@ -217,6 +249,7 @@ pub(crate) fn programs(
         object.insert("name".to_owned(), json!(body.name));
         object.insert("parent".to_owned(), json!(body.parent));
         object.insert("mass".to_owned(), json!(text(&body.mass)));
+        object.insert("armature".to_owned(), json!(text(&body.armature)));
         for (_, key, vector) in &body.vectors {
             object.insert((*key).to_owned(), json!(list(vector)));
         }
@@ -240,7 +273,7 @@ pub(crate) fn programs(
         "quasi_velocities": names(system.quasi_velocities()),
         "parameters": Value::Object(parameters.collect()),
         "gravity": list(&tree.gravity),
-        "laws": LAWS.map(|(_, law, _)| law),
+        "laws": tree.laws().map(|(_, law, _)| law),
         "bodies": tree.bodies.iter().map(body).collect::<Vec<_>>(),
         "operations": operations.object(),
     })

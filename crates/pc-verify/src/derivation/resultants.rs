@@ -31,7 +31,7 @@ impl Derivation {
                 rows.push([force, column.len()]);
                 column.extend(point.angular_velocity(body)?.iter().map(|omega| omega.eps));
             }
-            if text.has_own_energy() {
+            if text.has_own_energy {
                 for r in 0..k {
                     if !self.couplings.has(s, r) {
                         column.push(0.0);

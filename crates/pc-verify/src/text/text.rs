@@ -32,6 +32,8 @@ pub(crate) struct Text {
     pub(crate) velocities: Velocities,
     pub(crate) brackets: Option<Brackets>,
     pub(crate) constraints: Vec<Term>,
+    /// Whether the model has energy in addition to the energy of bodies and joints.
+    pub(crate) has_own_energy: bool,
     pub(crate) kinetic: Option<Term>,
     pub(crate) potential: Option<Term>,
     /// The Lagrangian, if it is given as a whole.
@@ -96,6 +98,12 @@ impl Text {
         let terms = |list: &[Expression]| list.iter().map(term).collect::<Result<Vec<Term>, Unable>>();
         let energy = document.lagrangian.as_ref();
         let part = |part: Option<&Expression>| part.map(term).transpose();
+        let drives = tree.drives(&names)?;
+        let with = |own: Option<&Expression>, more: Vec<Term>| -> Result<Option<Term>, Unable> {
+            let all: Vec<(bool, Term)> =
+                part(own)?.into_iter().chain(more).map(|term| (false, term)).collect();
+            Ok((!all.is_empty()).then_some(Term::Sum(all)))
+        };
         let tables = model.parameter_values().tables();
         let observed = document.integrals.iter().chain(&document.outputs);
         let observed = observed.map(|observed| (observed.name.text.clone(), &observed.expression));
@@ -133,10 +141,11 @@ impl Text {
                 .iter()
                 .map(|c| term(&c.expression))
                 .collect::<Result<_, _>>()?,
-            kinetic: part(energy.and_then(|l| l.kinetic.as_ref()))?,
-            potential: part(energy.and_then(|l| l.potential.as_ref()))?,
+            has_own_energy: energy.is_some_and(|l| l.kinetic.is_some() || l.lagrangian.is_some()),
+            kinetic: with(energy.and_then(|l| l.kinetic.as_ref()), drives.kinetic)?,
+            potential: with(energy.and_then(|l| l.potential.as_ref()), drives.potential)?,
             lagrangian: part(energy.and_then(|l| l.lagrangian.as_ref()))?,
-            dissipation: part(energy.and_then(|l| l.dissipation.as_ref()))?,
+            dissipation: with(energy.and_then(|l| l.dissipation.as_ref()), drives.dissipation)?,
             bodies: bodies.chain(tree.bodies(&names)?.into_iter().map(Ok)).collect::<Result<_, Unable>>()?,
             forces: document
                 .forces
@@ -177,11 +186,6 @@ impl Text {
         };
         let all = velocities.iter().chain(&self.definitions).chain(&self.constraints).chain(energy);
         all.map(Term::size).sum::<usize>() + self.bodies.iter().map(of_body).sum::<usize>()
-    }
-
-    /// Whether the model has energy in addition to the energy of bodies.
-    pub(crate) fn has_own_energy(&self) -> bool {
-        self.lagrangian.is_some() || self.kinetic.is_some()
     }
 
     /// n

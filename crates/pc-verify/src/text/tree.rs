@@ -8,12 +8,20 @@ use std::collections::HashSet;
 
 use pc_expr::parse::{Ast, AstKind};
 use pc_model::document::{
-    Document, Expression, Following, Joint, JointKind, JointRotation, NamedExpression, Point, TreeBody,
+    Document, Drive, Expression, Following, Joint, JointKind, JointRotation, NamedExpression, Point, TreeBody,
 };
 
 use crate::error::Unable;
 use crate::text::body::{Body, Turning, matrix};
 use crate::text::term::{Function, Names, Term};
+
+/// The terms of the rotors, springs and dampers of joints.
+#[derive(Default)]
+pub(crate) struct Drives {
+    pub(crate) kinetic: Vec<Term>,
+    pub(crate) potential: Vec<Term>,
+    pub(crate) dissipation: Vec<Term>,
+}
 
 /// The number of definitions of a body: J_0, J, R and r.
 const OF_BODY: usize = 9 + 9 + 9 + 3;
@@ -150,6 +158,28 @@ impl<'a> Tree<'a> {
             }
         }
         Ok(ways)
+    }
+
+    /// The energies and powers of the rotors, springs and dampers of joints: ½ J x'², ½ k (x − x_0)² and ½ d x'².
+    pub(crate) fn drives(&self, names: &Names) -> Result<Drives, Unable> {
+        let mut drives = Drives::default();
+        let half_square = |factor: Term, of: &Term| times([&Term::Number(0.5), &factor, of, of]);
+        for body in &self.document.tree {
+            let joint = &body.joint;
+            let term =
+                |part: &Option<Expression>| part.as_ref().map(|part| names.resolve(&part.ast)).transpose();
+            let Drive { armature, stiffness, rest, damping } = &joint.drive;
+            let [x] = &self.ways(joint, names)?[..] else { continue };
+            let rate = Term::Rate(Box::new(x.clone()));
+            drives.kinetic.extend(term(armature)?.map(|armature| half_square(armature, &rate)));
+            drives.dissipation.extend(term(damping)?.map(|damping| half_square(damping, &rate)));
+            if let Some(stiffness) = term(stiffness)? {
+                let rest = term(rest)?.unwrap_or(Term::Number(0.0));
+                let stretch = Term::Sum(vec![(false, x.clone()), (true, rest)]);
+                drives.potential.push(half_square(stiffness, &stretch));
+            }
+        }
+        Ok(drives)
     }
 
     /// The rates of the coordinates of joints, with the names of the coordinates.
