@@ -1131,6 +1131,45 @@ pc_status pc_model_set_joint_pitch(pc_model *model,
                                    pc_error **error);
 
 /**
+ * Gears a joint with one coordinate to that of the body `followed`: its coordinate is `ratio` times
+ * the other's plus `offset`; null stands for 1 and for 0. It has no quasi-velocity of its own; the
+ * name of its coordinate is that of a definition and of an output.
+ */
+pc_status pc_model_set_joint_gear(pc_model *model,
+                                  const char *body,
+                                  const char *followed,
+                                  const char *ratio,
+                                  const char *offset,
+                                  pc_error **error);
+
+/**
+ * Sets the armature J of a joint with one coordinate x, which adds J x'^2/2 to the kinetic energy:
+ * the inertia of a rotor times the square of the gear's ratio.
+ */
+pc_status pc_model_set_joint_armature(pc_model *model,
+                                      const char *body,
+                                      const char *armature,
+                                      pc_error **error);
+
+/**
+ * Adds a spring to a joint with one coordinate x, with the potential energy
+ * stiffness (x - rest)^2/2; a null `rest` stands for 0.
+ */
+pc_status pc_model_set_joint_spring(pc_model *model,
+                                    const char *body,
+                                    const char *stiffness,
+                                    const char *rest,
+                                    pc_error **error);
+
+/**
+ * Sets the damping d of a joint with one coordinate x: the force -d x'.
+ */
+pc_status pc_model_set_joint_damping(pc_model *model,
+                                     const char *body,
+                                     const char *damping,
+                                     pc_error **error);
+
+/**
  * Sets the rotation from the axes of a joint to those of the parent: the 9 entries of its
  * matrix, row by row. It cannot be combined with pc_model_set_joint_turns.
  */

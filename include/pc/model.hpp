@@ -197,6 +197,24 @@ public:
     {
         return say(pc_model_set_joint_pitch, body.c_str(), pitch.c_str());
     }
+    /// Gears a joint to that of another body, by x = ratio x of the other + offset.
+    model &joint_gear(const std::string &body, const std::string &followed, const std::string &ratio = "1",
+                      const std::string &offset = "0")
+    {
+        return say(pc_model_set_joint_gear, body.c_str(), followed.c_str(), ratio.c_str(), offset.c_str());
+    }
+    model &joint_armature(const std::string &body, const std::string &armature)
+    {
+        return say(pc_model_set_joint_armature, body.c_str(), armature.c_str());
+    }
+    model &joint_spring(const std::string &body, const std::string &stiffness, const std::string &rest = "0")
+    {
+        return say(pc_model_set_joint_spring, body.c_str(), stiffness.c_str(), rest.c_str());
+    }
+    model &joint_damping(const std::string &body, const std::string &damping)
+    {
+        return say(pc_model_set_joint_damping, body.c_str(), damping.c_str());
+    }
     model &joint_rotation(const std::string &body, const matrix &entries)
     {
         return entries_of_body(pc_model_set_joint_rotation, body, entries);

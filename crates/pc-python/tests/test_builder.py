@@ -200,4 +200,15 @@ def test_every_joint_is_written() -> None:
         names = builder.build().system().names
         velocities = [name for name in names if name.endswith("'") or "_ω" in name or "_v" in name]
         assert len(velocities) == 1 + count, (joint, names)
+    geared = chetaev.Model.builder("geared").body("last", joint=chetaev.Prismatic(axis=[0, 1, 0], stiffness=40.0, rest=0.1), mass=1)
+    follower = chetaev.Screw(axis=[0, 0, 1], pitch=0.1, follows="last", ratio=-2.0, offset=0.3, armature=0.1, damping=0.2)
+    geared = geared.body("b", joint=follower, mass=1.0, inertia=[1, 1, 1]).simulation(t_end=0.5).build().system()
+    motion = geared.run()
+    assert geared.names == ("last", "last'")
+    assert motion["b"] == pytest.approx(-2.0 * motion["last"] + 0.3)
+    # (1 + 4 (1 + 0.1 + 0.1²)) x'' = -40 (x - 0.1) - 4 0.2 x', from rest at x = 0.
+    mass, rate = 1 + 4 * (1.1 + 0.01), 0.8
+    shift, turn = rate / (2 * mass), (40 / mass - (rate / (2 * mass)) ** 2) ** 0.5
+    end = 0.1 - 0.1 * np.exp(-0.5 * shift) * (np.cos(0.5 * turn) + shift / turn * np.sin(0.5 * turn))
+    assert motion["last"][-1] == pytest.approx(end, rel=1e-8)
     assert "s" in chetaev.Model.builder("two").body("b", joint=joints[2], mass=1.0).build().system().names

@@ -133,6 +133,93 @@ pub unsafe extern "C" fn pc_model_set_joint_pitch(
     unsafe { draft(model, error, "pc_model_set_joint_pitch", write) }
 }
 
+/// Gears a joint with one coordinate to that of the body `followed`: its coordinate is `ratio` times
+/// the other's plus `offset`; null stands for 1 and for 0. It has no quasi-velocity of its own; the
+/// name of its coordinate is that of a definition and of an output.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_joint_gear(
+    model: *mut pc_model,
+    body: *const c_char,
+    followed: *const c_char,
+    ratio: *const c_char,
+    offset: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let followed = || Ok(quoted(unsafe { text(followed, "followed") }?));
+        put(draft, (body, "body"), Section::Bodies, &["joint", "follows"], followed)?;
+        for (key, value) in [("ratio", ratio), ("offset", offset)] {
+            if !value.is_null() {
+                // SAFETY: text, as the preamble demands.
+                let value = || Ok(quoted(unsafe { text(value, key) }?));
+                put(draft, (body, "body"), Section::Bodies, &["joint", key], value)?;
+            }
+        }
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_joint_gear", write) }
+}
+
+/// Sets the armature J of a joint with one coordinate x, which adds J x'^2/2 to the kinetic energy:
+/// the inertia of a rotor times the square of the gear's ratio.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_joint_armature(
+    model: *mut pc_model,
+    body: *const c_char,
+    armature: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: null or text, as the preamble demands.
+    let armature = || Ok(quoted(unsafe { text(armature, "armature") }?));
+    let write =
+        |draft: &mut Draft| put(draft, (body, "body"), Section::Bodies, &["joint", "armature"], armature);
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_joint_armature", write) }
+}
+
+/// Adds a spring to a joint with one coordinate x, with the potential energy
+/// stiffness (x - rest)^2/2; a null `rest` stands for 0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_joint_spring(
+    model: *mut pc_model,
+    body: *const c_char,
+    stiffness: *const c_char,
+    rest: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let stiffness = || Ok(quoted(unsafe { text(stiffness, "stiffness") }?));
+        put(draft, (body, "body"), Section::Bodies, &["joint", "stiffness"], stiffness)?;
+        if rest.is_null() {
+            return Ok(());
+        }
+        // SAFETY: text, as the preamble demands.
+        let rest = || Ok(quoted(unsafe { text(rest, "rest") }?));
+        put(draft, (body, "body"), Section::Bodies, &["joint", "rest"], rest)
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_joint_spring", write) }
+}
+
+/// Sets the damping d of a joint with one coordinate x: the force -d x'.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_joint_damping(
+    model: *mut pc_model,
+    body: *const c_char,
+    damping: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: null or text, as the preamble demands.
+    let damping = || Ok(quoted(unsafe { text(damping, "damping") }?));
+    let write =
+        |draft: &mut Draft| put(draft, (body, "body"), Section::Bodies, &["joint", "damping"], damping);
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_joint_damping", write) }
+}
+
 /// Sets the rotation from the axes of a joint to those of the parent: the 9 entries of its
 /// matrix, row by row. It cannot be combined with pc_model_set_joint_turns.
 #[unsafe(no_mangle)]

@@ -140,6 +140,10 @@ fn everything() -> Model {
     say!(model, pc_model_set_body_torque, "arm", "0", "0", "m").unwrap();
     say!(model, pc_model_set_joint_place, "arm", "0", "m", "0").unwrap();
     say!(model, pc_model_set_joint_pitch, "arm", "0.1").unwrap();
+    say!(model, pc_model_set_joint_gear, "arm", "bob", "2", "m").unwrap();
+    say!(model, pc_model_set_joint_armature, "arm", "m").unwrap();
+    say!(model, pc_model_set_joint_spring, "arm", "m", "0.1").unwrap();
+    say!(model, pc_model_set_joint_damping, "arm", "m").unwrap();
     say!(model, pc_model_set_joint_axis, "arm"; [0.0, 0.0, 1.0].as_ptr()).unwrap();
     let (first, second) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
     say!(model, pc_model_set_joint_axes, "arm"; first.as_ptr(), second.as_ptr()).unwrap();

@@ -294,7 +294,7 @@ fn names_made_of_others_are_not_taken() {
         flow(&text).motion.names()[..5],
         ["l__x", "l__y", "l__φ", "l_x", "l_x_damping"].map(str::to_owned)
     );
-    assert!(text.contains("\"l_x'\" = \"-l_x_damping_*l_x'\""), "{text}");
+    assert!(text.contains("damping = \"l_x_damping_\""), "{text}");
 }
 
 /// A joint that does not move follows nothing.
@@ -322,11 +322,10 @@ fn a_link_without_mass_may_follow_another() {
     let (text, left_out) = model_of_urdf(&Source::new("r.urdf", urdf), false).unwrap();
     assert!(left_out.is_empty(), "{left_out:?}");
     let mut flow = flow(&text);
-    assert_eq!(flow.names[..2], ["a", "b"]);
+    assert_eq!(flow.names[..2], ["a", "a'"]);
     let (a, rate) = (0.4, 1.5);
-    let mut rates = [f64::NAN; 4];
-    flow.motion.rhs(0.0, &[a, 2.0 * a, rate, 2.0 * rate], &mut rates).unwrap();
+    let mut rates = [f64::NAN; 2];
+    flow.motion.rhs(0.0, &[a, rate], &mut rates).unwrap();
     let expected = 2.0 * 9.81 * 0.3 * f64::cos(a) / (2.0 * 0.09 + 0.1);
-    assert!((rates[2] - expected).abs() < 1e-12 * expected, "{rates:?}");
-    assert!((rates[3] - 2.0 * expected).abs() < 1e-12 * expected, "{rates:?}");
+    assert!((rates[1] - expected).abs() < 1e-12 * expected, "{rates:?}");
 }

@@ -137,6 +137,14 @@ pub enum ErrorKind {
         /// The bodies, each attached to the next and the last to the first.
         bodies: Vec<String>,
     },
+    /// A body whose joint another would follow, but which does not exist.
+    #[error("no body with a joint is called `{name}`")]
+    NothingToFollow {
+        /// The name.
+        name: String,
+        /// The other bodies whose joints have exactly one coordinate.
+        known: Vec<String>,
+    },
     /// A joint that another would follow, whose coordinates are none or several.
     #[error("the joint of `{name}` is {kind}: a joint follows one that has exactly one coordinate")]
     NotFollowable {
@@ -389,6 +397,12 @@ impl ErrorKind {
                 suggest(name, known, &format!("the bodies with joints are {}; \"world\" is what they hang on in the end", listed(known)))
             }
             Self::CircularParents { .. } => "leave the `parent` of one of them out: it hangs on the world then".into(),
+            Self::NothingToFollow { known, .. } if known.is_empty() => {
+                "no other joint has exactly one coordinate".into()
+            }
+            Self::NothingToFollow { name, known } => {
+                suggest(name, known, &format!("the other joints with one coordinate are those of {}", listed(known)))
+            }
             Self::NotFollowable { .. } => "follow a revolute, prismatic or screw joint".into(),
             Self::CircularGears { .. } => "leave `follows` out of one of them: it moves by itself then".into(),
             Self::OfJoint { .. } => "give its start value alone, or leave it out".into(),

@@ -70,7 +70,7 @@ fn followed<'d>(document: &'d Document, body: &TreeBody) -> Result<Option<&'d Tr
         None => {
             let known = document.tree.iter().filter(|other| other.joint.kind.is_single());
             let known = known.filter(|other| other.name != body.name).map(|other| other.name.text.clone());
-            let kind = ErrorKind::NotInTree { name: named.value.clone(), known: known.collect() };
+            let kind = ErrorKind::NothingToFollow { name: named.value.clone(), known: known.collect() };
             Err(document.source.error(&named.place, kind))
         }
     }

@@ -30,6 +30,8 @@ const JOINT_KEYS: &[&str] = &[
     "rest",
     "damping",
 ];
+/// The entries of joints with one coordinate.
+const OF_SINGLE: &[&str] = &["follows", "armature", "stiffness", "rest", "damping"];
 pub(super) const JOINT: &str = "joint = { kind = \"revolute\", axis = [0, 0, 1], at = [0, 0, 0] }";
 const AXIS: &str = "axis = [0, 0, 1]";
 const AXES: &str = "axes = [[1, 0, 0], [0, 1, 0]]";
@@ -276,6 +278,7 @@ fn check_normal(kind: JointKind, part: &Item<'_>, normal: [f64; 3]) -> Result<()
 /// The error for an entry that joints of this kind do not have.
 fn without_effect(part: &Item<'_>, kind: JointKind) -> ModelError {
     let example = match kind.axes() {
+        _ if OF_SINGLE.contains(&part.key()) => "kind = \"revolute\"",
         0 => "kind = \"revolute\"",
         1 if part.key() == "axes" => AXIS,
         1 => "kind = \"screw\"",

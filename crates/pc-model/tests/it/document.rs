@@ -248,7 +248,7 @@ fn every_message() {
         assert_eq!(refused(text) + "\n", expected, "\n{text}");
         count += 1;
     }
-    assert_eq!(count, 113);
+    assert_eq!(count, 122);
 }
 
 #[test]

@@ -46,7 +46,34 @@ class Fixed(Joint):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Revolute(Joint):
+class _Single(Joint):
+    """A joint with exactly one coordinate x: the base of those that can follow another, and be driven.
+
+    Parameters
+    ----------
+    follows : str, optional
+        The body whose joint it follows: x is ``ratio`` times the coordinate of the other plus ``offset``.
+    ratio, offset : expression, optional
+        1 and 0 by default.
+    armature : expression, optional
+        The inertia J of a rotor, with the kinetic energy J x'²/2.
+    stiffness, rest : expression, optional
+        A spring with the potential energy ``stiffness`` (x - ``rest``)²/2.
+    damping : expression, optional
+        The coefficient d of the force -d x'.
+    """
+
+    follows: str | None = None
+    ratio: Any = None
+    offset: Any = None
+    armature: Any = None
+    stiffness: Any = None
+    rest: Any = None
+    damping: Any = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Revolute(_Single):
     """The body turns about ``axis``: the coordinate ``NAME``.
 
     Examples
@@ -64,7 +91,7 @@ class Revolute(Joint):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Prismatic(Joint):
+class Prismatic(_Single):
     """The body slides along ``axis``: the coordinate ``NAME``."""
 
     kind = "prismatic"
@@ -72,7 +99,7 @@ class Prismatic(Joint):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Screw(Joint):
+class Screw(_Single):
     """The body turns by ``NAME`` about ``axis`` and slides along it by ``pitch`` times ``NAME``."""
 
     kind = "screw"
