@@ -3,8 +3,8 @@
 //! A [`Model`](crate::Model) becomes an [`Assembly`](assembly::Assembly). Read `assembly` first, then `assembler`,
 //! which the parts of the assembly share, and then the parts in the order in which `assemble` uses them:
 //! `parameters` and `tables`, `frame`, `definitions`, `start`, `bodies`, the `tree` of bodies on joints and
-//! `external_force`, `brackets`, `constraints` with `constraint_treatment`, `body_reactions` and the names of a
-//! `resultant`, `action`, `event` and `events`, and the quasi-velocities `given` in addition to those of the text;
+//! `external_force`, `brackets`, `joint_reactions`, `constraints` with `constraint_treatment`, `body_reactions` and
+//! the names of a `resultant`, `action`, `event` and `events`, and the quasi-velocities `given` in addition to those of the text;
 //! `trial`, `definite`, `inertia` and `orientations` check the start. A `function` and a `drawing` are assembled
 //! separately, on request.
 
@@ -27,6 +27,7 @@ pub(crate) mod frame;
 pub(crate) mod function;
 pub(crate) mod given;
 mod inertia;
+pub(crate) mod joint_reactions;
 pub(crate) mod orientations;
 pub(crate) mod parameters;
 pub(crate) mod resultant;

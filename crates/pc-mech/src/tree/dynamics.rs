@@ -119,25 +119,31 @@ impl<'g> TreeDynamics<'g> {
         relative.into_iter().zip(&dropped).map(total).collect()
     }
 
-    /// The same equations without regrouping of masses.
-    pub(crate) fn with_own_masses(self, tree: &Tree<'g>) -> TreeDynamics<'g> {
-        TreeDynamics { masses: (0..tree.links.len()).map(|link| tree.mass_on(link)).collect(), ..self }
-    }
-
-    /// The moments and forces of the joints on the links for the accelerations `unknowns` under `loads`.
-    pub(crate) fn forces_on_joints(
+    /// The moments and forces that give bodies with these masses, each on a link or in the world, the motion with
+    /// the accelerations `unknowns`, along the axes of the links and about their origins.
+    pub(crate) fn required(
         &self,
         unknowns: &[Vec<Expr<'g>>],
-        loads: &[Spatial<'g>],
+        masses: impl Iterator<Item = (Option<usize>, MassOnLink<'g>)>,
     ) -> Vec<Spatial<'g>> {
+        let (motions, _) = self.motions(Some(unknowns));
+        let world = self.world();
+        masses
+            .map(|(link, mass)| link.map_or(&world, |link| &motions[link]).force(self.graph, &mass))
+            .collect()
+    }
+
+    /// The acceleration of the world in which the weights are no forces.
+    fn world(&self) -> Acceleration<'g> {
+        Acceleration::new(self.graph, ZERO, ZERO, self.gravity.map(|g| -g))
+    }
+
+    /// The moments and forces of the joints on the links for the accelerations `unknowns`.
+    fn forces_on_joints(&self, unknowns: &[Vec<Expr<'g>>]) -> Vec<Spatial<'g>> {
         let graph = self.graph;
         let (motions, _) = self.motions(Some(unknowns));
-        let taken =
-            |((motion, mass), load): ((&Acceleration<'g>, &MassOnLink<'g>), &Spatial<'g>)| -> Spatial<'g> {
-                let force = motion.force(graph, mass);
-                std::array::from_fn(|c| graph.keep(force[c] - load[c]))
-            };
-        let mut forces: Vec<Spatial<'g>> = motions.iter().zip(&self.masses).zip(loads).map(taken).collect();
+        let taken = motions.iter().zip(&self.masses).map(|(motion, mass)| motion.force(graph, mass));
+        let mut forces: Vec<Spatial<'g>> = taken.collect();
         for (i, link) in self.articulated.links.iter().enumerate().rev() {
             if let Some(parent) = link.parent {
                 let seen = force_seen(graph, &link.turning, &link.place, &forces[i]);
@@ -150,7 +156,7 @@ impl<'g> TreeDynamics<'g> {
     /// The difference between τ and the forces that the accelerations `unknowns` require, link by link; zero
     /// for the solution.
     pub(crate) fn balance(&self, unknowns: &[Vec<Expr<'g>>]) -> Vec<Vec<Expr<'g>>> {
-        let forces = self.forces_on_joints(unknowns, &vec![[Expr::ZERO; 6]; self.links.len()]);
+        let forces = self.forces_on_joints(unknowns);
         let left = |(i, applied): (usize, &Vec<Expr<'g>>)| {
             let needed = self.articulated.along(i, &forces, &unknowns[i]);
             applied.iter().zip(needed).map(|(&applied, needed)| applied - needed).collect()
@@ -162,7 +168,7 @@ impl<'g> TreeDynamics<'g> {
     /// components are zero.
     fn motions(&self, unknowns: Option<&[Vec<Expr<'g>>]>) -> (Vec<Acceleration<'g>>, Vec<Vec<Expr<'g>>>) {
         let graph = self.graph;
-        let world = Acceleration::new(graph, ZERO, ZERO, self.gravity.map(|g| -g));
+        let world = self.world();
         let mut motions: Vec<Acceleration<'g>> = Vec::with_capacity(self.links.len());
         let mut dropped = Vec::with_capacity(self.links.len());
         for (i, (link, known)) in self.links.iter().zip(&self.articulated.links).enumerate() {

@@ -3,9 +3,11 @@
 use pc_expr::Expr;
 
 use crate::system::system::System;
-use crate::tree::articulated::{Spatial, moving_part, turning_part};
-use crate::tree::spatial::{apply, apply_transpose, cross};
+use crate::tree::articulated::{Spatial, force_seen, moving_part, turning_part};
+use crate::tree::body::TreeBody;
+use crate::tree::spatial::{apply, apply_transpose, cross, vector};
 use crate::tree::system::TreeSystem;
+use crate::tree::tree::Stand;
 
 /// The force and the moment that a joint exerts on its body, in terms of (t, x, η, η̇).
 ///
@@ -16,6 +18,7 @@ pub struct JointReaction<'g> {
     pub(crate) body: String,
     pub(crate) force: [Expr<'g>; 3],
     pub(crate) moment: [Expr<'g>; 3],
+    force_in_world: [Expr<'g>; 3],
 }
 
 impl<'g> JointReaction<'g> {
@@ -29,6 +32,11 @@ impl<'g> JointReaction<'g> {
         &self.force
     }
 
+    /// The force along the axes of the world.
+    pub fn force_in_world(&self) -> &[Expr<'g>; 3] {
+        &self.force_in_world
+    }
+
     /// The moment about the origin of the body.
     pub fn moment(&self) -> &[Expr<'g>; 3] {
         &self.moment
@@ -37,8 +45,8 @@ impl<'g> JointReaction<'g> {
 
 impl<'g> System<'g> {
     /// The forces and moments of the joints of a [tree](crate::Tree) on their bodies (Newton's and Euler's
-    /// equations from the tips to the root); none for a system that is not a tree, or for bodies fixed to
-    /// others. If added as [outputs](System::with_more_outputs), they are observed along a motion.
+    /// equations from the tips to the root), in the order of declaration; none for a system that is not a tree. If
+    /// added as [outputs](System::with_more_outputs), they are observed along a motion.
     pub fn joint_reactions(&self) -> Vec<JointReaction<'g>> {
         let Some(tree) = &self.tree else { return Vec::new() };
         tree.reactions(self)
@@ -63,32 +71,42 @@ impl<'g> TreeSystem<'g> {
 
     fn reactions(&self, system: &System<'g>) -> Vec<JointReaction<'g>> {
         let graph = self.tree.graph;
-        let dynamics = self.dynamics(&system.frame, &system.forces).with_own_masses(&self.tree);
+        let dynamics = self.dynamics(&system.frame, &system.forces);
         let unknowns = self.by_link(&system.accelerations());
         let motions = self.tree.motions();
-        // F and N act in addition to the joints.
-        let mut loads: Vec<Spatial<'g>> = vec![[Expr::ZERO; 6]; self.tree.links.len()];
-        for (body, stand) in self.tree.bodies.iter().zip(&self.tree.stands) {
-            let Some(link) = stand.link else { continue };
-            let force = apply_transpose(graph, &motions.links[link].rotation, &body.force);
+        // What accelerates each body, less F and N, which act in addition to the joints.
+        let bodies = self.tree.bodies.iter().zip(&self.tree.stands);
+        let masses = bodies.clone().map(|(body, stand)| (stand.link, self.tree.mass_of(body, stand)));
+        let mut borne = dynamics.required(&unknowns, masses);
+        for (borne, (body, stand)) in borne.iter_mut().zip(bodies) {
+            let force = apply_transpose(graph, &motions.of_stand(stand).rotation, &body.force);
             let arm = cross(&stand.point(graph, &body.centre), &force);
             let torque = apply(graph, &stand.rotation, &body.torque);
             for i in 0..3 {
-                loads[link][i] += torque[i] + arm[i];
-                loads[link][i + 3] += force[i];
+                borne[i] = graph.keep(borne[i] - torque[i] - arm[i]);
+                borne[i + 3] = graph.keep(borne[i + 3] - force[i]);
             }
         }
-        let borne = dynamics.forces_on_joints(&unknowns, &loads);
-        let mut reactions = Vec::new();
-        for (body, (stand, own)) in self.tree.bodies.iter().zip(self.tree.stands.iter().zip(&self.tree.own)) {
-            let Some(link) = stand.link.filter(|_| !own.is_empty()) else { continue };
-            let (n, f) = (turning_part(&borne[link]), moving_part(&borne[link]));
-            reactions.push(JointReaction {
+        // From the tips to the root.
+        for &(body, parent) in self.tree.order.iter().rev() {
+            let Some(parent) = parent else { continue };
+            let links = &dynamics.articulated.links[self.tree.own[body].clone()];
+            let seen = links
+                .iter()
+                .rev()
+                .fold(borne[body], |p, link| force_seen(graph, &link.turning, &link.place, &p));
+            borne[parent] = std::array::from_fn(|i| graph.keep(borne[parent][i] + seen[i]));
+        }
+        let reaction = |(borne, (body, stand)): (&Spatial<'g>, (&TreeBody<'g>, &Stand<'g>))| {
+            let (n, f) = (turning_part(borne), moving_part(borne));
+            let arm = cross(&stand.place, &f);
+            JointReaction {
                 body: body.name.clone(),
                 force: apply_transpose(graph, &stand.rotation, &f),
-                moment: apply_transpose(graph, &stand.rotation, &n),
-            });
-        }
-        reactions
+                moment: apply_transpose(graph, &stand.rotation, &vector(|i| n[i] - arm[i])),
+                force_in_world: apply(graph, &motions.of_stand(stand).rotation, &f),
+            }
+        };
+        borne.iter().zip(self.tree.bodies.iter().zip(&self.tree.stands)).map(reaction).collect()
     }
 }

@@ -80,7 +80,8 @@ impl<'g> MassOnLink<'g> {
         }
     }
 
-    fn add(&mut self, other: &MassOnLink<'g>) {
+    /// Adds masses on the same link.
+    pub(crate) fn add(&mut self, other: &MassOnLink<'g>) {
         self.mass += other.mass;
         self.moment = add(&self.moment, &other.moment);
         self.inertia = tensor(|i, j| self.inertia[i][j] + other.inertia[i][j]);

@@ -10,7 +10,7 @@ use crate::tree::body::TreeBody;
 use crate::tree::joint::{Drive, Joint, Kind};
 use crate::tree::link::{Hinge, Link};
 use crate::tree::spatial::{
-    Tensor, Vector, ZERO, add, apply, congruent, entries_of, product, transpose, unit,
+    Tensor, Vector, ZERO, add, apply, congruent, entries_of, product, tensor, transpose, unit,
 };
 
 /// Bodies joined by joints: one or more trees attached to the world.
@@ -53,6 +53,8 @@ pub struct Tree<'g> {
     pub(crate) links: Vec<Link<'g>>,
     /// The links of each body.
     pub(crate) own: Vec<Range<usize>>,
+    /// The bodies and their parents, parents first.
+    pub(crate) order: Vec<(usize, Option<usize>)>,
 }
 
 /// The maximum number of elementary joints in a tree whose equations are also derived as a whole: with more
@@ -84,11 +86,12 @@ impl<'g> Tree<'g> {
     ) -> Result<Tree<'g>, MechError> {
         let bodies: Vec<TreeBody<'g>> = bodies.into_iter().collect();
         let order = from_root_to_tip(&bodies)?;
-        let mut tree = Tree { graph, stands: Vec::new(), links: Vec::new(), own: Vec::new(), bodies };
+        let (stands, links, own) = (Vec::new(), Vec::new(), Vec::new());
+        let mut tree = Tree { graph, stands, links, own, order, bodies };
         let world = Stand { link: None, place: ZERO, rotation: unit() };
         let mut stands = vec![world; tree.bodies.len()];
         let mut own = vec![0..0; tree.bodies.len()];
-        for (body, parent) in order {
+        for (body, parent) in tree.order.clone() {
             let first = tree.links.len();
             stands[body] = tree.hang(body, parent.map_or(world, |parent| stands[parent]))?;
             own[body] = first..tree.links.len();
@@ -272,6 +275,7 @@ impl<'g> Tree<'g> {
             stands: self.stands.iter().map(stand).collect(),
             links: self.links.iter().map(|link| link.map(put)).collect(),
             own: self.own.clone(),
+            order: self.order.clone(),
         }
     }
 
@@ -357,24 +361,24 @@ impl<'g> Tree<'g> {
     /// The mass, the first moment and the inertia about the origin of the link of all bodies fixed to it, along
     /// its axes.
     pub(crate) fn mass_on(&self, link: usize) -> MassOnLink<'g> {
-        let graph = self.graph;
         let mut on_link = MassOnLink { mass: Expr::ZERO, moment: ZERO, inertia: [ZERO; 3] };
         let bodies = self.bodies.iter().zip(&self.stands).filter(|(_, stand)| stand.link == Some(link));
-        for (body, stand) in bodies {
-            let centre = stand.point(graph, &body.centre);
-            let inertia = stand.inertia(graph, body);
-            let moment = centre.map(|c| body.mass * c);
-            let square = graph.dot(moment.iter().copied(), centre.iter().copied());
-            on_link.mass += body.mass;
-            on_link.moment = add(&on_link.moment, &moment);
-            for i in 0..3 {
-                for j in 0..3 {
-                    let diagonal = if i == j { square } else { Expr::ZERO };
-                    on_link.inertia[i][j] += inertia[i][j] + diagonal - moment[i] * centre[j];
-                }
-            }
-        }
+        bodies.for_each(|(body, stand)| on_link.add(&self.mass_of(body, stand)));
         on_link
+    }
+
+    /// The mass, the first moment and the inertia of a body about the origin of its link, along the axes of the link.
+    pub(crate) fn mass_of(&self, body: &TreeBody<'g>, stand: &Stand<'g>) -> MassOnLink<'g> {
+        let graph = self.graph;
+        let centre = stand.point(graph, &body.centre);
+        let inertia = stand.inertia(graph, body);
+        let moment = centre.map(|c| body.mass * c);
+        let square = graph.dot(moment.iter().copied(), centre.iter().copied());
+        let about_origin = |i: usize, j: usize| {
+            let diagonal = if i == j { square } else { Expr::ZERO };
+            inertia[i][j] + diagonal - moment[i] * centre[j]
+        };
+        MassOnLink { mass: body.mass, moment, inertia: tensor(about_origin) }
     }
 }
 

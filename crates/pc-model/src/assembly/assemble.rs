@@ -215,6 +215,7 @@ impl<'g> Assembler<'g, '_> {
         builder = builder.external_force(self.model.external_forces());
         let system =
             builder.frame(frame).build().map_err(|error| self.model.document().derivation_error(error))?;
+        let system = self.with_joint_reactions(system)?;
         self.check_inputs(&system)?;
         let written_start = self.model.projects_start().then(|| start.clone());
         let constraints =

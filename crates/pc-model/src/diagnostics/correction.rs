@@ -38,6 +38,7 @@ impl MeaningError {
             | MeaningError::SingularStart { .. }
             | MeaningError::NotAnIntegral { .. }
             | MeaningError::ForceNotDetermined { .. }
+            | MeaningError::JointForceUnknown { .. }
             | MeaningError::NoForm { .. }
             | MeaningError::Derivation { .. } => Category::Inconsistent,
             _ => Category::Text,
@@ -91,6 +92,9 @@ impl MeaningError {
                  displacements: `{constraint} = {{ expr = \"…\", kind = \"nonlinear\" }}`"
             ),
             MeaningError::NotNonlinear { .. } => "leave out its kind".into(),
+            MeaningError::JointForceUnknown { .. } => {
+                "forces of joints are outputs of models whose bodies all hang on joints, without constraints".into()
+            }
             MeaningError::ForceNotDetermined { .. } => {
                 "use coordinates in which the body moves independently, and constraints that tie it".into()
             }

@@ -118,6 +118,14 @@ pub enum MeaningError {
         /// The component.
         name: String,
     },
+    /// A force or torque of a joint that the motion of bodies does not determine.
+    #[error("`{name}` is not known: {cause}")]
+    JointForceUnknown {
+        /// The component.
+        name: String,
+        /// Why.
+        cause: &'static str,
+    },
     /// A definition without velocities.
     #[error("`{text}` contains no velocity, so it defines no quasi-velocity")]
     NoVelocity {

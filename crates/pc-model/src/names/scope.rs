@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use pc_expr::parse::{Ast, AstKind, Factor, Sign, Span};
 use pc_expr::{Expr, Graph};
 
-use crate::assembly::resultant::{force_names, torque_names};
+use crate::assembly::resultant::{force_names, joint_force_names, joint_torque_names, torque_names};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::meaning::MeaningError;
@@ -69,6 +69,8 @@ pub(crate) struct Scope<'g, 'd> {
     pub(super) points: Option<HashMap<String, Expr<'g>>>,
     /// The forces and torques of reactions that are used, each with a place in the file.
     pub(crate) resultants: Vec<(Expr<'g>, Place)>,
+    /// The components of forces and torques of joints that have been named.
+    pub(crate) of_joints: Vec<(Expr<'g>, Place)>,
 }
 
 impl<'g, 'd> Scope<'g, 'd> {
@@ -99,6 +101,7 @@ impl<'g, 'd> Scope<'g, 'd> {
             arguments: Vec::new(),
             points: None,
             resultants: Vec::new(),
+            of_joints: Vec::new(),
         }
     }
 
@@ -357,6 +360,11 @@ impl<'g, 'd> Scope<'g, 'd> {
                 self.resultants.push((symbol, expression.place(span)));
                 Ok(symbol)
             }
+            Stage::Observation if self.is_of_joint(name) => {
+                let symbol = self.graph.symbol(name);
+                self.of_joints.push((symbol, expression.place(span)));
+                Ok(symbol)
+            }
             _ if self.is_other(name) => Ok(self.graph.symbol(name)),
             _ => {
                 let fault = |_| MeaningError::UnknownName { name: name.to_owned(), known: self.known() };
@@ -399,6 +407,14 @@ impl<'g, 'd> Scope<'g, 'd> {
         constraints.iter().map(|c| &c.name.text).any(|constraint| {
             bodies.iter().any(|body| of_body(constraint, body))
                 || tree.iter().any(|body| of_tree(constraint, body))
+        })
+    }
+
+    /// Whether `name` is a component of the force or torque of a joint on its body.
+    fn is_of_joint(&self, name: &str) -> bool {
+        self.document.tree.iter().map(|body| &body.name.text).any(|body| {
+            let mut names = joint_force_names(body).into_iter().chain(joint_torque_names(body));
+            names.any(|known| known == name)
         })
     }
 

@@ -12,6 +12,7 @@ mod measure;
 mod mechanisms;
 mod report;
 mod rhs;
+mod robots;
 mod solve;
 mod speed;
 mod start;

@@ -10,6 +10,7 @@ use crate::hand::{self, Routine};
 use crate::measure::{Variant, interleave};
 use crate::mechanisms;
 use crate::report::Report;
+use crate::robots;
 
 /// Derived and by hand may differ by this, relative to the largest component: rounding grows along a chain with the condition of
 /// its mass matrix, about as the square of its length.
@@ -99,6 +100,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Error> {
     mechanisms::from_text(report, LENGTHS[LENGTHS.len() - 1])?;
     mechanisms::pendulum(report)?;
     mechanisms::loops(report)?;
+    robots::run(report)?;
     let of =
         |links: usize| measured.iter().find(|(count, _)| *count == links).map_or(f64::NAN, |(_, each)| *each);
     let exponent = 1.0 + (of(200) / of(20)).ln() / 10f64.ln();

@@ -11,6 +11,7 @@ use pc_expr::{
 
 use crate::compiled::elimination::columns::{Columns, Storage, derivative};
 use crate::compiled::elimination::pivots::Pivots;
+use crate::compiled::elimination::products::Products;
 use crate::compiled::elimination::prologue::Prologue;
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::first_order::{FirstOrder, Linearised};
@@ -45,9 +46,8 @@ pub(crate) struct Unrolled {
 enum Jacobian {
     /// An expression for each entry.
     Columns(Columns),
-    /// Column by column, as products with unit vectors, for large trees, where the entry for each pair of
-    /// bodies is long.
-    Products(Pattern),
+    /// Products with unit vectors, for large trees, where the entry for each pair of bodies is long.
+    Products(Box<Products>),
 }
 
 impl Unrolled {
@@ -71,7 +71,6 @@ impl Unrolled {
                 .transpose()
         };
         let by_products = system.tree.as_ref().is_some_and(|tree| tree.is_large());
-        let wants_products = options.jvp || options.jacobian && by_products;
         let observed: Vec<Expr<'_>> = system.observables.iter().map(|&(_, value)| value).collect();
         let observed = Program::new(graph, &inputs, &graph.substitute(&observed, &values))?;
         let varies = |&place: &usize| system.varying.contains(&system.parameters[place].0);
@@ -82,11 +81,19 @@ impl Unrolled {
             pivots,
             jacobian: match options.jacobian {
                 true if by_products => {
-                    Some(Jacobian::Products(Pattern::full(system.state.len(), system.state.len())))
+                    // The accelerations stay symbols.
+                    let (v, product) = product(system, &Linearised::new(system, &factors, &system.unknowns));
+                    let unknowns = (&system.unknowns[..], &unknowns[..]);
+                    Some(Jacobian::Products(Box::new(Products::new(
+                        graph,
+                        &inputs,
+                        unknowns,
+                        (&v, &product),
+                    )?)))
                 }
                 wanted => columns(wanted, &system.state)?.map(Jacobian::Columns),
             },
-            jvp: wants_products.then(|| jvp(system, &linearised, options.backend)).transpose()?,
+            jvp: options.jvp.then(|| jvp(system, &linearised, options.backend)).transpose()?,
             known: vec![0.0; 2 * system.state.len()],
             parameter_jacobian: columns(options.parameter_jacobian, &system.parameter_symbols())?,
             time_derivative: columns(options.time_derivative, &[system.time])?,
@@ -161,8 +168,10 @@ impl Unrolled {
 
     /// Compiles the Jacobian, which is otherwise compiled on first use.
     pub(crate) fn prepare_jacobian(&mut self) {
-        if let Some(Jacobian::Columns(columns)) = &mut self.jacobian {
-            columns.prepare();
+        match &mut self.jacobian {
+            Some(Jacobian::Columns(columns)) => columns.prepare(),
+            Some(Jacobian::Products(products)) => products.prepare(),
+            None => {}
         }
     }
 
@@ -242,20 +251,7 @@ impl Unrolled {
         let jacobian = self.jacobian.as_mut().ok_or(EvaluationFailure::NotCompiled { what: "Jacobian" })?;
         match jacobian {
             Jacobian::Columns(columns) => columns.eval(Point { t, y, p }, entries, storage),
-            // Full in both storages.
-            Jacobian::Products(_) => {
-                let what = "product with its Jacobian";
-                let jvp = self.jvp.as_mut().ok_or(EvaluationFailure::NotCompiled { what })?;
-                self.known[..y.len()].copy_from_slice(y);
-                self.known[y.len()..].fill(0.0);
-                for (column, entries) in entries.chunks_exact_mut(y.len()).enumerate() {
-                    self.known[y.len() + column] = 1.0;
-                    jvp.eval(t, &self.known, p, entries);
-                    self.known[y.len() + column] = 0.0;
-                    check_finite(entries, jvp, Point { t, y: &self.known, p })?;
-                }
-                Ok(())
-            }
+            Jacobian::Products(products) => products.eval(Point { t, y, p }, entries, storage),
         }
     }
 
@@ -297,19 +293,25 @@ impl Unrolled {
     pub(crate) fn pattern(&self) -> Option<&Pattern> {
         self.jacobian.as_ref().map(|jacobian| match jacobian {
             Jacobian::Columns(columns) => columns.pattern(),
-            Jacobian::Products(pattern) => pattern,
+            Jacobian::Products(products) => products.pattern(),
         })
     }
 }
 
-/// A program for (∂ẏ/∂y) v as a function of the state (y, v), by forward differentiation along v, without
-/// a Jacobian.
+/// A direction v and the product (∂ẏ/∂y) v, by forward differentiation along v, without a Jacobian.
+fn product<'g>(system: &FirstOrder<'g>, linearised: &Linearised<'_, 'g>) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
+    let v = system.fresh("δ", &system.state);
+    let along: Vec<_> = system.state.iter().copied().zip(v.iter().copied()).collect();
+    let product = linearised.along(&along);
+    (v, product)
+}
+
+/// A program for (∂ẏ/∂y) v as a function of the state (y, v).
 fn jvp<'g>(
     system: &FirstOrder<'g>,
     linearised: &Linearised<'_, 'g>,
     backend: Backend,
 ) -> Result<Evaluator, ExprError> {
-    let v = system.fresh("δ", &system.state);
-    let along: Vec<_> = system.state.iter().copied().zip(v.iter().copied()).collect();
-    derivative(system.graph, &system.inputs(&v), &linearised.along(&along), backend)
+    let (v, product) = product(system, linearised);
+    derivative(system.graph, &system.inputs(&v), &product, backend)
 }
