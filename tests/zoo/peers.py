@@ -1,8 +1,8 @@
 """The same equations of motion from Pinocchio and MuJoCo, where these are installed.
 
-Both get the tree without followers, dampings and friction, and planar joints as two that slide and one that turns. They read
-origins, axes, masses and inertias by themselves, and give the mass matrix and the forces of all joints. These are then reduced
-to the velocities that are free.
+Both get the tree without followers, dampings and friction, and planar joints as two that slide and one that
+turns. They read origins, axes, masses and inertias by themselves, and give the mass matrix and the forces
+of all joints. These are then reduced to the velocities that are free.
 """
 
 import dataclasses
@@ -66,13 +66,15 @@ def by_pinocchio(path: pathlib.Path, robot: Robot, state: State) -> Dynamics:
 
 
 def by_mujoco(path: pathlib.Path, robot: Robot, state: State) -> Dynamics:
-    """Mass matrix and forces by MuJoCo, which has the velocity of a free body along the axes of the world: v_world = R v."""
+    """Mass matrix and forces by MuJoCo, which has the velocity of a free body along fixed axes: R v."""
     tree = _bare(path)
     for joint in tree.findall("joint"):
         for limit in joint.findall("limit"):
             joint.remove(limit)
     options = ElementTree.SubElement(tree, "mujoco")
-    ElementTree.SubElement(options, "compiler", fusestatic="false", discardvisual="true", balanceinertia="false")
+    ElementTree.SubElement(
+        options, "compiler", fusestatic="false", discardvisual="true", balanceinertia="false"
+    )
     try:
         design = mujoco.MjSpec.from_string(ElementTree.tostring(tree, encoding="unicode"))
         if robot.floating:
@@ -105,7 +107,9 @@ def _parts(robot: Robot, state: State) -> list[Part]:
         q, v, first = state.q[joint.name], state.v[joint.name], joint.velocities.start
         if joint.kind == "planar":
             for k in range(3):
-                parts.append(Part(_third(joint.name, k), slice(first + k, first + k + 1), q[k : k + 1], v[k : k + 1]))
+                parts.append(
+                    Part(_third(joint.name, k), slice(first + k, first + k + 1), q[k : k + 1], v[k : k + 1])
+                )
         elif len(v) > 0:
             parts.append(Part(joint.name or ROOT, joint.velocities, q, v))
     return parts
@@ -118,8 +122,10 @@ def _as_pinocchio(q: np.ndarray, count: int) -> np.ndarray:
     return np.array([np.cos(q[0]), np.sin(q[0])]) if count == 2 else q
 
 
-def _reduced(robot: Robot, state: State, mass: np.ndarray, forces: np.ndarray, spread: np.ndarray) -> Dynamics:
-    """From the velocities of the peer to those of the joints, then to those that are free; dampings are added."""
+def _reduced(
+    robot: Robot, state: State, mass: np.ndarray, forces: np.ndarray, spread: np.ndarray
+) -> Dynamics:
+    """From the velocities of the peer to those of the joints that are free; dampings are added."""
     free, led = reduction(robot)
     damping = np.zeros(robot.size)
     for joint in robot.joints:

@@ -1,4 +1,7 @@
-"""Accelerations from the program `pc`: a robot is imported, and run for an instant with accelerations as outputs."""
+"""Accelerations from the program `pc`, which imports a robot and runs it for an instant.
+
+The accelerations are outputs of the model, added to its text; its start is set on the command line.
+"""
 
 import pathlib
 import re
@@ -9,7 +12,7 @@ import tomllib
 import numpy as np
 
 from rigid_bodies import State, reduction
-from robot import Joint, Robot
+from robot import Robot
 
 INSTANT = "1e-12"
 """The time of the run; the first row of its table belongs to the start."""

@@ -1,25 +1,29 @@
 """The dynamics of a tree of rigid bodies: Newton–Euler and the composite bodies, by recursion.
 
-A velocity of a body is the six numbers [ω; v] of its turning and of its origin, in its own axes; a force is [n; f], the
-moment about that origin and the force. The joint of body i adds S_i q̇_i to what the body has from its parent p:
+A velocity of a body is the six numbers [ω; v] of its turning and of its origin, in its own axes; a force is
+[n; f], the moment about that origin and the force. The joint of body i adds S_i q̇_i to what the body has
+from its parent p:
 
     v_i = X_i v_p + S_i q̇_i
     a_i = X_i a_p + S_i q̈_i + Ṡ_i q̇_i + v_i × S_i q̇_i
     f_i = I_i a_i + v_i ×* I_i v_i + Σ X_cᵀ f_c        over the children c
     τ_i = S_iᵀ f_i
 
-(Featherstone, Rigid Body Dynamics Algorithms, 2008, tables 5.1 and 6.2.) Gravity is an acceleration of the world, upwards.
-The mass matrix comes from the composite bodies: the inertia of a joint with all that it carries, handed down the tree.
+(Featherstone, Rigid Body Dynamics Algorithms, 2008, tables 5.1 and 6.2.) Gravity is an acceleration of the
+world, upwards. The mass matrix comes from the composite bodies: the inertia of a joint with all that it
+carries, handed down the tree.
 
-Where a joint follows another one, the velocities of all joints are u = G q̇ with a constant matrix G, and what is moved by
-q̇ has the mass matrix GᵀMG and the forces Gᵀτ.
+Where a joint follows another one, the velocities of all joints are u = G q̇ with a constant matrix G, and
+what is moved by q̇ has the mass matrix GᵀMG and the forces Gᵀτ.
 
-The state of a robot is given joint by joint: `q` and `v`, the latter with as many numbers as the joint has velocities.
+The state of a robot is given joint by joint: `q` and `v`, the latter with as many numbers as the joint has
+velocities.
 
     turning, sliding   q: angle or length           v: its rate
-    planar             q: x, y, φ                   v: their rates; x and y along the axes of the joint that follow its normal
+    planar             q: x, y, φ                   v: their rates
     floating           q: x, y, z, q0, q1, q2, q3   v: of the origin, then ω, both in the axes of the link
 
+A planar joint slides along the two axes of the joint that follow its normal: x and y where that is z.
 """
 
 import dataclasses
@@ -44,7 +48,7 @@ class State:
 class Dynamics:
     """M q̈ + h = 0 in the velocities that are free, in the order of `names`.
 
-    `mass` is M; `bias` is h, the forces that hold q̈ at zero: those of gravity, of the velocities and of the dampings.
+    `mass` is M; `bias` is h, the forces that hold q̈ at zero against gravity, dampings and the velocities.
     """
 
     names: list[str]
@@ -108,7 +112,9 @@ class Tree:
         for joint in robot.joints:
             q, v = state.q.get(joint.name), state.v.get(joint.name)
             turn, shift, subspace, rate = _motion(joint, q, v)
-            self.from_parent.append(_transform(joint.rotation @ turn, joint.position + joint.rotation @ shift))
+            self.from_parent.append(
+                _transform(joint.rotation @ turn, joint.position + joint.rotation @ shift)
+            )
             self.subspace.append(subspace)
             self.subspace_rate.append(rate)
         carrier = {joint.child: k for k, joint in enumerate(robot.joints)}
@@ -160,7 +166,9 @@ def _count(joint: Joint) -> int:
     return joint.velocities.stop - joint.velocities.start
 
 
-def _motion(joint: Joint, q: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def _motion(
+    joint: Joint, q: np.ndarray, v: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """How the joint turns and shifts its child, S, and the rate of S in the axes of the child."""
     still, zero, axis = np.eye(3), np.zeros(3), joint.axis
     match joint.kind:

@@ -1,7 +1,7 @@
 """A robot as its URDF file describes it: a tree of links, and how each joint moves.
 
-Only what the laws of motion need is read: masses, origins, axes, dampings, and which joint follows which. Limits, dry
-friction, shapes, transmissions and whatever simulators add are passed over.
+Only what the laws of motion need is read: masses, origins, axes, dampings, and which joint follows which.
+Limits, dry friction, shapes, transmissions and whatever simulators add are passed over.
 """
 
 import dataclasses
@@ -17,7 +17,7 @@ VELOCITIES = {"fixed": 0, "revolute": 1, "continuous": 1, "prismatic": 1, "plana
 
 @dataclasses.dataclass
 class Link:
-    """A rigid body: its mass, its mass centre, and its inertia about that centre along the axes of the link."""
+    """A rigid body: its mass, its mass centre, and its inertia about that centre, in the axes of the link."""
 
     name: str
     mass: float
@@ -53,7 +53,7 @@ class Joint:
 
 @dataclasses.dataclass
 class Robot:
-    """Links, and the joints that carry them, each after the joint of its parent; the first joint carries the root."""
+    """Links, and the joints that carry them, each after that of its parent; the first carries the root."""
 
     name: str
     about: str
@@ -95,7 +95,18 @@ def read(path: pathlib.Path) -> Robot:
     root, joints = _tree(tree, {link.name: k for k, link in enumerate(links)})
     header = header_of(path)
     floating = "Root: floating." in header
-    base = Joint("", "floating" if floating else "fixed", -1, root, np.zeros(3), np.eye(3), np.zeros(3), 0.0, None, None)
+    base = Joint(
+        "",
+        "floating" if floating else "fixed",
+        -1,
+        root,
+        np.zeros(3),
+        np.eye(3),
+        np.zeros(3),
+        0.0,
+        None,
+        None,
+    )
     ordered = _numbered(base, joints)
     return Robot(tree.get("name", ""), header, floating, links, ordered)
 

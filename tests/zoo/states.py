@@ -12,7 +12,9 @@ def of(robot: Robot, name: str) -> State:
     """A state inside the limits of the joints, in numbers of few digits."""
     draw = random.Random(name)
     q, v = {}, {}
-    for joint in sorted((joint for joint in robot.joints if joint.mimic is None), key=lambda joint: joint.name):
+    for joint in sorted(
+        (joint for joint in robot.joints if joint.mimic is None), key=lambda joint: joint.name
+    ):
         q[joint.name], v[joint.name] = _drawn(joint, draw)
     return with_followers(robot, State(q, v))
 
@@ -37,7 +39,9 @@ def _drawn(joint: Joint, draw: random.Random) -> tuple[np.ndarray, np.ndarray]:
             return _uniform(draw, 1.0, 3), _uniform(draw, 1.0, 3)
         case "floating":
             turn = np.array([1.0, 0.0, 0.0, 0.0]) + _uniform(draw, 0.7, 4)
-            return np.concatenate([_uniform(draw, 1.0, 3), turn / np.linalg.norm(turn)]), _uniform(draw, 1.0, 6)
+            return np.concatenate([_uniform(draw, 1.0, 3), turn / np.linalg.norm(turn)]), _uniform(
+                draw, 1.0, 6
+            )
     lower, upper = _range(joint)
     q = lower + (upper - lower) * draw.uniform(0.05, 0.95)
     rate = 1.0 if joint.kind != "prismatic" else (upper - lower) / 2.0
