@@ -62,3 +62,4 @@ mod undetermined;
 mod unit_quaternions;
 mod units;
 mod verdicts;
+mod zoo;

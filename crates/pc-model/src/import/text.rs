@@ -275,8 +275,9 @@ impl<'a> Tree<'a> {
         if !turns.is_empty() {
             let _ = write!(text, ", turns = [{}]", turns.join(", "));
         }
+        let mimic = joint.mimic.as_ref().filter(|_| joint.kind.is_single());
         if let Some((followed, mimic)) =
-            joint.mimic.as_ref().and_then(|mimic| Some((self.joint_named(&mimic.joint)?, mimic)))
+            mimic.and_then(|mimic| Some((self.joint_named(&mimic.joint)?, mimic)))
         {
             // Writing to a string cannot fail.
             let _ = write!(text, ", follows = {}", quoted(self.names.body(&followed.child)));
