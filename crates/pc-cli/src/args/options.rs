@@ -389,6 +389,9 @@ pub struct ImportArguments {
     /// Let the root link move freely; otherwise it is fixed
     #[arg(long)]
     pub floating: bool,
+    /// Fix the joints that move no mass, with a note for each; otherwise they are an error
+    #[arg(long)]
+    pub fix_massless: bool,
     /// The model to write; standard output if it is not given
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,

@@ -6,10 +6,16 @@ use pc_expr::parse::{FUNCTIONS, is_name};
 
 use crate::import::robot::{Joint, Kind, Link};
 
-/// The suffixes of the names of a body's coordinates and velocities, if its joint has several coordinates.
-const PLANAR: [&str; 3] = ["x'", "y'", "φ'"];
-const FLOATING: [&str; 6] = ["v1", "v2", "v3", "ω1", "ω2", "ω3"];
-const OF_COORDINATES: [&str; 8] = ["x", "y", "z", "φ", "q0", "q1", "q2", "q3"];
+/// The endings of the names of a body's coordinates and velocities, if its joint has several coordinates.
+fn endings(kind: Kind) -> (&'static [&'static str], &'static [&'static str]) {
+    match kind {
+        Kind::Planar => (&["x", "y", "φ"], &["x'", "y'", "φ'"]),
+        Kind::Universal => (&["1", "2"], &["1'", "2'"]),
+        Kind::Spherical => (&["q0", "q1", "q2", "q3"], &["ω1", "ω2", "ω3"]),
+        Kind::Floating => (&["x", "y", "z", "q0", "q1", "q2", "q3"], &["v1", "v2", "v3", "ω1", "ω2", "ω3"]),
+        Kind::Fixed | Kind::Revolute | Kind::Continuous | Kind::Prismatic => (&[], &[]),
+    }
+}
 
 /// The names in the model of a robot: those of its links and joints, changed if they are invalid or taken.
 pub(crate) struct Names<'a> {
@@ -30,25 +36,25 @@ impl<'a> Names<'a> {
         let joints = || order.iter().filter_map(|(_, joint)| *joint);
         let mut coordinates = HashMap::new();
         for joint in joints().filter(|joint| joint.kind.is_single()) {
-            coordinates.insert(joint.name.as_str(), unused(&joint.name, &[], &mut taken));
+            coordinates.insert(joint.name.as_str(), unused(&joint.name, &[], &mut [&mut taken]));
         }
-        // The names of bodies are labels, but those of free and planar bodies begin the names of their coordinates.
+        // The names of bodies are labels, but those of joints with several coordinates begin the names of these.
         let mut bodies = HashMap::new();
         let mut labels: HashSet<String> = HashSet::from(["world".to_owned()]);
         for (place, (link, joint)) in order.iter().enumerate() {
-            let names =
-                place == 0 || joint.is_some_and(|joint| !joint.kind.is_single() && joint.kind != Kind::Fixed);
-            let label = match names {
-                true => unused(&link.name, &[&OF_COORDINATES[..], &FLOATING].concat(), &mut taken),
-                false => unused(&link.name, &[], &mut labels),
+            let kind =
+                if place == 0 { Kind::Floating } else { joint.map_or(Kind::Fixed, |joint| joint.kind) };
+            let (coordinates, velocities) = endings(kind);
+            let label = match coordinates {
+                [] => unused(&link.name, &[], &mut [&mut labels]),
+                _ => unused(&link.name, &[coordinates, velocities].concat(), &mut [&mut labels, &mut taken]),
             };
-            labels.insert(label.clone());
             bodies.insert(link.name.as_str(), label);
         }
         let mut names = Names { bodies, coordinates, dampings: HashMap::new() };
         for joint in joints().filter(|joint| joint.damping != 0.0 && joint.kind != Kind::Fixed) {
             let moves = names.coordinate(joint).unwrap_or_else(|| names.body(&joint.child));
-            let damping = unused(&format!("{moves}_damping"), &[], &mut taken);
+            let damping = unused(&format!("{moves}_damping"), &[], &mut [&mut taken]);
             names.dampings.insert(&joint.name, damping);
         }
         names
@@ -71,22 +77,19 @@ impl<'a> Names<'a> {
 
     /// The names of the velocities of a joint.
     pub(crate) fn velocities(&self, joint: &Joint) -> Vec<String> {
-        let of_body = |velocities: &[&str]| {
-            let body = self.body(&joint.child);
-            velocities.iter().map(|velocity| format!("{body}_{velocity}")).collect()
-        };
-        match (joint.kind, self.coordinate(joint)) {
-            (Kind::Planar, _) => of_body(&PLANAR),
-            (Kind::Floating, _) => of_body(&FLOATING),
-            (_, Some(x)) => vec![format!("{x}'")],
-            (_, None) => Vec::new(),
+        match self.coordinate(joint) {
+            Some(x) => vec![format!("{x}'")],
+            None => {
+                let body = self.body(&joint.child);
+                endings(joint.kind).1.iter().map(|velocity| format!("{body}_{velocity}")).collect()
+            }
         }
     }
 }
 
 /// The name with invalid characters replaced, and extended if it, or a name `NAME_ENDING` formed from it, is
-/// taken.
-fn unused(name: &str, endings: &[&str], taken: &mut HashSet<String>) -> String {
+/// in one of the sets of taken names, to which these names are then added.
+fn unused(name: &str, endings: &[&str], taken: &mut [&mut HashSet<String>]) -> String {
     let mut own: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     if !is_name(&own) {
         own.insert(0, '_');
@@ -96,9 +99,9 @@ fn unused(name: &str, endings: &[&str], taken: &mut HashSet<String>) -> String {
         let longer = endings.iter().map(|ending| format!("{own}_{ending}"));
         std::iter::once(own.to_owned()).chain(longer).collect()
     };
-    while all(&own).iter().any(|name| taken.contains(name)) {
+    while all(&own).iter().any(|name| taken.iter().any(|taken| taken.contains(name))) {
         own.push('_');
     }
-    taken.extend(all(&own));
+    taken.iter_mut().for_each(|taken| taken.extend(all(&own)));
     own
 }

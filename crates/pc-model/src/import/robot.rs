@@ -1,6 +1,8 @@
-//! The contents of a URDF file.
+//! The contents of a file that describes a robot.
 
 use std::ops::Range;
+
+pub(crate) use crate::import::pose::Pose;
 
 /// A robot: links, and joints between them.
 #[derive(Clone, Debug, Default)]
@@ -31,13 +33,6 @@ pub(crate) struct Inertial {
     pub(crate) inertia: [f64; 6],
 }
 
-/// A position, and rotations by roll, pitch and yaw about the fixed axes x, y and z.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Pose {
-    pub(crate) xyz: [f64; 3],
-    pub(crate) rpy: [f64; 3],
-}
-
 /// A joint.
 #[derive(Clone, Debug)]
 pub(crate) struct Joint {
@@ -48,10 +43,16 @@ pub(crate) struct Joint {
     pub(crate) child: String,
     pub(crate) origin: Pose,
     pub(crate) axis: [f64; 3],
+    /// The second axis of a universal joint, which the first one turns.
+    pub(crate) second_axis: [f64; 3],
     pub(crate) limits: Vec<(&'static str, f64)>,
     pub(crate) damping: f64,
     pub(crate) friction: f64,
     pub(crate) mimic: Option<Mimic>,
+    /// An inertia in the direction of each velocity, such as that of a geared rotor.
+    pub(crate) armature: f64,
+    /// What was changed about it.
+    pub(crate) remarks: Vec<String>,
 }
 
 /// The kind of a joint.
@@ -63,18 +64,32 @@ pub(crate) enum Kind {
     Prismatic,
     Floating,
     Planar,
+    Spherical,
+    Universal,
 }
 
 impl Kind {
     /// The kinds, each with its name in URDF.
-    pub(crate) const ALL: [(&'static str, Kind); 6] = [
+    pub(crate) const ALL: [(&'static str, Kind); 8] = [
         ("fixed", Kind::Fixed),
         ("revolute", Kind::Revolute),
         ("continuous", Kind::Continuous),
         ("prismatic", Kind::Prismatic),
         ("floating", Kind::Floating),
         ("planar", Kind::Planar),
+        ("spherical", Kind::Spherical),
+        ("universal", Kind::Universal),
     ];
+
+    /// Its name in URDF.
+    pub(crate) fn word(self) -> &'static str {
+        Kind::ALL.iter().find(|(_, kind)| *kind == self).map_or("free", |(word, _)| word)
+    }
+
+    /// Whether it moves along or about an axis.
+    pub(crate) fn has_axis(self) -> bool {
+        !matches!(self, Kind::Fixed | Kind::Floating | Kind::Spherical)
+    }
 
     /// Whether the joint has exactly one coordinate.
     pub(crate) fn is_single(self) -> bool {

@@ -1,28 +1,50 @@
 //! Writes a robot as the text of a model.
 
-use std::collections::HashSet;
 use std::fmt::Write;
 use std::path::Path;
 
 use crate::diagnostics::source::Source;
+use crate::diagnostics::words::rounded;
 use crate::import::error::UrdfError;
+use crate::import::inertia::{along_axes_of_the_link, impossible};
+use crate::import::massless;
 use crate::import::names::Names;
 use crate::import::robot::{Inertial, Joint, Kind, Link, Mimic, Pose, Robot};
 use crate::import::urdf;
 
-/// The text of the model of a robot in URDF, and a line for each kind of element that was left out.
+/// How a robot becomes a model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ImportOptions {
+    /// Whether the root link moves freely; otherwise it is fixed.
+    pub floating: bool,
+    /// Whether joints that move no mass are fixed; otherwise they are refused.
+    pub fix_massless: bool,
+}
+
+/// The text of the model of a robot in URDF, and notes on what was left out and changed.
 ///
-/// Bodies have the names of links, and coordinates those of joints, changed if they are not valid names; the
-/// root link is fixed, or free if `floats` is set. Limits and meshes become comments.
+/// Bodies have the names of links, and coordinates those of joints, changed if they are not valid names. Limits
+/// and meshes become comments.
+///
+/// # Errors
+/// [`UrdfError`], which gives the file, line and column.
+pub fn model_of_robot(source: &Source, options: ImportOptions) -> Result<(String, Vec<String>), UrdfError> {
+    let mut robot = urdf::read(source)?;
+    if options.fix_massless {
+        robot = massless::fixed(&robot, &Tree::of(source, &robot)?.order);
+    }
+    let tree = Tree::of(source, &robot)?;
+    massless::check(source, &robot, &tree.order)?;
+    let starts = tree.starts()?;
+    Ok((tree.text(options.floating, &starts), tree.left_out()))
+}
+
+/// [`model_of_robot`] with the root link free if `floats` is set, and without joints that move no mass.
 ///
 /// # Errors
 /// [`UrdfError`], which gives the file, line and column.
 pub fn model_of_urdf(source: &Source, floats: bool) -> Result<(String, Vec<String>), UrdfError> {
-    let robot = urdf::read(source)?;
-    let tree = Tree::of(source, &robot)?;
-    tree.check_masses()?;
-    let starts = tree.starts()?;
-    Ok((tree.text(floats, &starts), tree.left_out()))
+    model_of_robot(source, ImportOptions { floating: floats, fix_massless: false })
 }
 
 /// The links of a robot in the order of a tree.
@@ -101,33 +123,6 @@ impl<'a> Tree<'a> {
         Ok(Tree { source, robot, order, names })
     }
 
-    /// Checks that everything that moves has mass, or mimics something that has mass: a joint that mimics
-    /// another needs no mass of its own.
-    fn check_masses(&self) -> Result<(), UrdfError> {
-        let mut carries: HashSet<&str> = HashSet::new();
-        for (link, joint) in self.order.iter().rev() {
-            let has_mass = link.inertial.as_ref().is_some_and(|inertial| {
-                inertial.mass > 0.0 || inertial.inertia.iter().any(|&moment| moment != 0.0)
-            });
-            if has_mass {
-                carries.insert(&link.name);
-            }
-            let Some(joint) = joint else { continue };
-            if carries.contains(link.name.as_str()) {
-                carries.insert(&joint.parent);
-            } else if joint.kind != Kind::Fixed && joint.mimic.is_none() {
-                let message = format!(
-                    "the link `{}` can move, and neither it nor what hangs on it has mass",
-                    link.name
-                );
-                let entry = format!("<link {}>", link.name);
-                let help = "give it an <inertial>, or make its joint `fixed`";
-                return Err(UrdfError::at(self.source, link.span.clone(), entry, message, help));
-            }
-        }
-        Ok(())
-    }
-
     /// The start values of joints that mimic others; all other joints start at 0.
     fn starts(&self) -> Result<Vec<(&'a Joint, f64)>, UrdfError> {
         let mut starts = Vec::new();
@@ -178,7 +173,16 @@ impl<'a> Tree<'a> {
             let mimic = joint.mimic.as_ref()?;
             Some(format!("the joint `{}` is fixed: that it mimics `{}` is left out", joint.name, mimic.joint))
         });
-        elements.chain(dry).chain(still).collect()
+        let remarks = self.robot.joints.iter().flat_map(|joint| joint.remarks.clone());
+        let moments = self.robot.links.iter().filter_map(|link| {
+            let [a, b, c] = impossible(link.inertial.as_ref()?)?.map(rounded);
+            Some(format!(
+                "no body has the principal moments of inertia {a}, {b} and {c} of the link `{}`: one is negative, or \
+                 larger than the sum of the others",
+                link.name
+            ))
+        });
+        elements.chain(dry).chain(still).chain(remarks).chain(moments).collect()
     }
 
     fn text(&self, floats: bool, starts: &[(&Joint, f64)]) -> String {
@@ -259,6 +263,10 @@ impl<'a> Tree<'a> {
         match joint {
             None => line(format!("joint = {{ kind = \"{}\" }}", if floats { "free" } else { "fixed" })),
             Some(joint) => {
+                joint.remarks.iter().for_each(|remark| line(format!("# {}", one_line(remark))));
+                if self.names.coordinate(joint).is_some_and(|x| x != joint.name) {
+                    line(format!("# the joint {}", one_line(&joint.name)));
+                }
                 if !joint.limits.is_empty() {
                     let limits: Vec<String> =
                         joint.limits.iter().map(|(key, value)| format!("{key} {value}")).collect();
@@ -276,7 +284,7 @@ impl<'a> Tree<'a> {
             if inertial.origin.xyz != [0.0; 3] {
                 line(format!("center = {}", list(&inertial.origin.xyz)));
             }
-            line(format!("inertia = {}", list(&along_axes_of_the_link(inertial))));
+            line(format!("inertia = {}", list(&moments(inertial))));
         }
         text
     }
@@ -288,9 +296,13 @@ impl<'a> Tree<'a> {
             Kind::Prismatic => "prismatic",
             Kind::Floating => "free",
             Kind::Planar => "planar",
+            Kind::Spherical => "spherical",
+            Kind::Universal => "universal",
         };
         let mut text = format!("joint = {{ kind = \"{kind}\"");
-        if joint.kind.is_single() || joint.kind == Kind::Planar {
+        if joint.kind == Kind::Universal {
+            let _ = write!(text, ", axes = [{}, {}]", list(&joint.axis), list(&joint.second_axis));
+        } else if joint.kind.has_axis() {
             let _ = write!(text, ", axis = {}", list(&joint.axis));
         }
         let Pose { xyz, rpy: [roll, pitch, yaw] } = joint.origin;
@@ -337,27 +349,9 @@ fn list(numbers: &[f64]) -> String {
     format!("[{}]", numbers.join(", "))
 }
 
-/// The inertia matrix R I Rᵀ, where R is the rotation of the inertial's origin; only the three moments of
-/// inertia if the products of inertia vanish.
-fn along_axes_of_the_link(inertial: &Inertial) -> Vec<f64> {
-    let [xx, yy, zz, xy, yz, xz] = inertial.inertia;
-    let own = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-    let [roll, pitch, yaw] = inertial.origin.rpy;
-    let [xx, yy, zz, xy, yz, xz] = if inertial.origin.rpy == [0.0; 3] {
-        inertial.inertia
-    } else {
-        let product = |a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]| -> [[f64; 3]; 3] {
-            std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|l| a[i][l] * b[l][j]).sum()))
-        };
-        let (a, b, c) = (roll.sin_cos(), pitch.sin_cos(), yaw.sin_cos());
-        let about_x = [[1.0, 0.0, 0.0], [0.0, a.1, -a.0], [0.0, a.0, a.1]];
-        let about_y = [[b.1, 0.0, b.0], [0.0, 1.0, 0.0], [-b.0, 0.0, b.1]];
-        let about_z = [[c.1, -c.0, 0.0], [c.0, c.1, 0.0], [0.0, 0.0, 1.0]];
-        let r = product(&about_z, &product(&about_y, &about_x));
-        let transposed = std::array::from_fn(|i| std::array::from_fn(|j| r[j][i]));
-        let turned = product(&r, &product(&own, &transposed));
-        [turned[0][0], turned[1][1], turned[2][2], turned[0][1], turned[1][2], turned[0][2]]
-    };
+/// The inertia matrix in axes of the link; only the three moments of inertia if the products of inertia vanish.
+fn moments(inertial: &Inertial) -> Vec<f64> {
+    let [xx, yy, zz, xy, yz, xz] = along_axes_of_the_link(inertial);
     match [xy, yz, xz] == [0.0; 3] {
         true => vec![xx, yy, zz],
         false => vec![xx, yy, zz, xy, yz, xz],
