@@ -5,13 +5,16 @@
 //! file; `leftover` finds macros that were not expanded, and `massless` what moves without mass. `text` writes the
 //! model, whose names are chosen by `names`.
 
+mod additions;
 mod error;
 mod inertia;
 mod leftover;
 mod massless;
+mod mjcf;
 mod names;
 mod pose;
 mod robot;
+mod sdf;
 mod text;
 mod urdf;
 mod xml;

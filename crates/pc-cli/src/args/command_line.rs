@@ -82,7 +82,7 @@ pub enum Command {
     /// Write the equations as C or Rust source without dependencies
     #[command(after_help = examples::EMIT)]
     Emit(EmitArguments),
-    /// Convert a robot in URDF into a model
+    /// Convert a robot in URDF, MJCF or SDF into a model
     #[command(after_help = examples::IMPORT)]
     Import(ImportArguments),
     /// List the built-in models, or print one

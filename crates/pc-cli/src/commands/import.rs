@@ -13,7 +13,7 @@ use crate::error::CliError;
 use crate::output::standard_output::print;
 use crate::terminal::text::say;
 
-/// Writes the text model of a robot in URDF.
+/// Writes the text model of a robot in URDF, MJCF or SDF.
 ///
 /// # Errors
 /// [`CliError`].

@@ -1,8 +1,10 @@
-//! `pc import`: robots in URDF move like the same models written by hand, and errors are shown with
+//! `pc import`: robots move like the same models written by hand, and errors are shown with
 //! their place.
 
+mod mjcf;
 mod motion;
 mod quirks;
+mod sdf;
 
 use std::process::Command;
 

@@ -1,6 +1,6 @@
 //! Moments of inertia in other axes and about other points, and whether a body can have them.
 
-use crate::import::pose::{Rotation, product, transposed};
+use crate::import::pose::{Pose, Rotation, product, transposed};
 use crate::import::robot::Inertial;
 
 /// The matrix of six entries Ixx, Iyy, Izz, Ixy, Iyz, Ixz.
@@ -22,6 +22,31 @@ pub(crate) fn along_axes_of_the_link(inertial: &Inertial) -> [f64; 6] {
     let turned = entries(&product(&r, &product(&matrix(inertial.inertia), &transposed(&r))));
     let largest = turned.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
     turned.map(|entry| if entry.abs() <= 4.0 * f64::EPSILON * largest { 0.0 } else { entry })
+}
+
+/// One body made of several: masses add up, the mass centre is their mean, and the moments about it are
+/// Σ (R I Rᵀ + m (r² − r rᵀ)).
+pub(crate) fn joined(parts: &[Inertial]) -> Option<Inertial> {
+    if let [part] = parts {
+        return Some(part.clone());
+    }
+    let mass: f64 = parts.iter().map(|part| part.mass).sum();
+    if parts.is_empty() {
+        return None;
+    }
+    let center: [f64; 3] = std::array::from_fn(|i| {
+        let moment: f64 = parts.iter().map(|part| part.mass * part.origin.xyz[i]).sum();
+        if mass == 0.0 { 0.0 } else { moment / mass }
+    });
+    let mut inertia = [0.0; 6];
+    for part in parts {
+        let [x, y, z] = std::array::from_fn(|i| part.origin.xyz[i] - center[i]);
+        let steiner = [y * y + z * z, x * x + z * z, x * x + y * y, -x * y, -y * z, -x * z];
+        for ((entry, own), arm) in inertia.iter_mut().zip(along_axes_of_the_link(part)).zip(steiner) {
+            *entry += own + part.mass * arm;
+        }
+    }
+    Some(Inertial { origin: Pose::at(center), mass, inertia })
 }
 
 /// The principal moments, in ascending order, by Jacobi's rotations.

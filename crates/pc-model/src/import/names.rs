@@ -4,7 +4,8 @@ use std::collections::{HashMap, HashSet};
 
 use pc_expr::parse::{FUNCTIONS, is_name};
 
-use crate::import::robot::{Joint, Kind, Link};
+use crate::import::massless::Order;
+use crate::import::robot::{Actuator, Joint, Kind, Robot, WORLD};
 
 /// The endings of the names of a body's coordinates and velocities, if its joint has several coordinates.
 fn endings(kind: Kind) -> (&'static [&'static str], &'static [&'static str]) {
@@ -13,9 +14,12 @@ fn endings(kind: Kind) -> (&'static [&'static str], &'static [&'static str]) {
         Kind::Universal => (&["1", "2"], &["1'", "2'"]),
         Kind::Spherical => (&["q0", "q1", "q2", "q3"], &["ω1", "ω2", "ω3"]),
         Kind::Floating => (&["x", "y", "z", "q0", "q1", "q2", "q3"], &["v1", "v2", "v3", "ω1", "ω2", "ω3"]),
-        Kind::Fixed | Kind::Revolute | Kind::Continuous | Kind::Prismatic => (&[], &[]),
+        Kind::Fixed | Kind::Revolute | Kind::Continuous | Kind::Prismatic | Kind::Screw => (&[], &[]),
     }
 }
+
+/// The endings of the names of the components of a point.
+const POINT: [&str; 12] = ["x", "y", "z", "11", "12", "13", "21", "22", "23", "31", "32", "33"];
 
 /// The names in the model of a robot: those of its links and joints, changed if they are invalid or taken.
 pub(crate) struct Names<'a> {
@@ -23,13 +27,17 @@ pub(crate) struct Names<'a> {
     bodies: HashMap<&'a str, String>,
     /// The names of the coordinates, for joints that have exactly one coordinate.
     coordinates: HashMap<&'a str, String>,
-    /// The names of the damping parameters, for the joints that have such a parameter.
-    dampings: HashMap<&'a str, String>,
+    /// The names of the parameters of joints, by joint and quantity.
+    parameters: HashMap<(String, &'static str), String>,
+    /// The names of the controls of actuators.
+    inputs: HashMap<&'a str, String>,
+    /// The names of the loops.
+    closures: Vec<String>,
 }
 
 impl<'a> Names<'a> {
     /// The names for links, each with the joint by which it is attached; the first link is the root.
-    pub(crate) fn of(order: &[(&'a Link, Option<&'a Joint>)]) -> Names<'a> {
+    pub(crate) fn of(robot: &'a Robot, order: &Order<'a>) -> Names<'a> {
         let mut taken: HashSet<String> =
             HashSet::from(["world", "t", "pi", "energy", "g"].map(str::to_owned));
         taken.extend(FUNCTIONS.iter().map(|function| function.name.to_owned()));
@@ -42,6 +50,10 @@ impl<'a> Names<'a> {
         let mut bodies = HashMap::new();
         let mut labels: HashSet<String> = HashSet::from(["world".to_owned()]);
         for (place, (link, joint)) in order.iter().enumerate() {
+            if link.is_world {
+                bodies.insert(link.name.as_str(), WORLD.to_owned());
+                continue;
+            }
             let kind =
                 if place == 0 { Kind::Floating } else { joint.map_or(Kind::Fixed, |joint| joint.kind) };
             let (coordinates, velocities) = endings(kind);
@@ -51,11 +63,32 @@ impl<'a> Names<'a> {
             };
             bodies.insert(link.name.as_str(), label);
         }
-        let mut names = Names { bodies, coordinates, dampings: HashMap::new() };
-        for joint in joints().filter(|joint| joint.damping != 0.0 && joint.kind != Kind::Fixed) {
-            let moves = names.coordinate(joint).unwrap_or_else(|| names.body(&joint.child));
-            let damping = unused(&format!("{moves}_damping"), &[], &mut [&mut taken]);
-            names.dampings.insert(&joint.name, damping);
+        let mut names = Names {
+            bodies,
+            coordinates,
+            parameters: HashMap::new(),
+            inputs: HashMap::new(),
+            closures: Vec::new(),
+        };
+        for joint in joints() {
+            let moves = names.coordinate(joint).unwrap_or_else(|| names.body(&joint.child)).to_owned();
+            for (quantity, _) in joint.quantities() {
+                let name = unused(&format!("{moves}_{quantity}"), &[], &mut [&mut taken]);
+                names.parameters.insert((joint.name.clone(), quantity), name);
+            }
+        }
+        for actuator in &robot.actuators {
+            let name = unused(&actuator.name, &[], &mut [&mut taken]);
+            names.inputs.insert(&actuator.name, name);
+        }
+        for closure in &robot.loops {
+            // A loop declares the components of two points.
+            let ends = ["a", "b"]
+                .iter()
+                .flat_map(|end| POINT.iter().map(move |component| format!("{end}_{component}")));
+            let ends: Vec<String> = ends.collect();
+            let ends: Vec<&str> = ends.iter().map(String::as_str).collect();
+            names.closures.push(unused(&closure.name, &ends, &mut [&mut taken]));
         }
         names
     }
@@ -70,9 +103,19 @@ impl<'a> Names<'a> {
         self.coordinates.get(joint.name.as_str()).map(String::as_str)
     }
 
-    /// The name of the damping parameter of a joint, if the joint has such a parameter.
-    pub(crate) fn damping(&self, joint: &Joint) -> Option<&str> {
-        self.dampings.get(joint.name.as_str()).map(String::as_str)
+    /// The name of the parameter of a joint for a quantity, if the joint has such a parameter.
+    pub(crate) fn parameter(&self, joint: &Joint, quantity: &'static str) -> Option<&str> {
+        self.parameters.get(&(joint.name.clone(), quantity)).map(String::as_str)
+    }
+
+    /// The name of the control of an actuator.
+    pub(crate) fn input(&self, actuator: &Actuator) -> &str {
+        &self.inputs[actuator.name.as_str()]
+    }
+
+    /// The name of a loop, by its place in the robot.
+    pub(crate) fn closure(&self, place: usize) -> &str {
+        &self.closures[place]
     }
 
     /// The names of the velocities of a joint.

@@ -5,12 +5,14 @@ use std::path::Path;
 
 use crate::diagnostics::source::Source;
 use crate::diagnostics::words::rounded;
+use crate::import::additions::list;
 use crate::import::error::UrdfError;
 use crate::import::inertia::{along_axes_of_the_link, impossible};
 use crate::import::massless;
 use crate::import::names::Names;
 use crate::import::robot::{Inertial, Joint, Kind, Link, Mimic, Pose, Robot};
-use crate::import::urdf;
+use crate::import::xml::parse;
+use crate::import::{additions, mjcf, sdf, urdf};
 
 /// How a robot becomes a model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,7 +31,17 @@ pub struct ImportOptions {
 /// # Errors
 /// [`UrdfError`], which gives the file, line and column.
 pub fn model_of_robot(source: &Source, options: ImportOptions) -> Result<(String, Vec<String>), UrdfError> {
-    let mut robot = urdf::read(source)?;
+    let document = parse(source)?;
+    let mut robot = match document.root_element().tag_name().name() {
+        "mujoco" => mjcf::read(source, &document)?,
+        "sdf" => sdf::read(source, &document)?,
+        _ => urdf::read(source, &document)?,
+    };
+    if let Some(world) = robot.links.first().filter(|link| link.is_world && options.floating) {
+        let message = format!("--floating has no place here: {} says which bodies move freely", robot.format);
+        let help = "leave the option out, or give the body a free joint";
+        return Err(UrdfError::at(source, world.span.clone(), "", message, help));
+    }
     if options.fix_massless {
         robot = massless::fixed(&robot, &Tree::of(source, &robot)?.order);
     }
@@ -119,7 +131,7 @@ impl<'a> Tree<'a> {
                 "leave a joint of the circle out",
             ));
         }
-        let names = Names::of(&order);
+        let names = Names::of(robot, &order);
         Ok(Tree { source, robot, order, names })
     }
 
@@ -182,7 +194,13 @@ impl<'a> Tree<'a> {
                 link.name
             ))
         });
-        elements.chain(dry).chain(still).chain(remarks).chain(moments).collect()
+        elements
+            .chain(self.robot.notes.clone())
+            .chain(dry)
+            .chain(still)
+            .chain(remarks)
+            .chain(moments)
+            .collect()
     }
 
     fn text(&self, floats: bool, starts: &[(&Joint, f64)]) -> String {
@@ -194,18 +212,25 @@ impl<'a> Tree<'a> {
         let file = Path::new(self.source.name())
             .file_name()
             .map_or_else(|| "-".into(), |name| name.to_string_lossy());
-        line(format!("# Made of the URDF file {} by `pc import`.", one_line(&file)));
+        line(format!("# Made of the {} file {} by `pc import`.", self.robot.format, one_line(&file)));
         self.left_out().iter().for_each(|left| line(format!("# {}.", one_line(left))));
         line("\n[model]".into());
         line(format!("name = {}", quoted(&self.robot.name)));
-        line("\n[parameters]\ng = 9.81 # URDF says nothing of gravity".into());
-        for joint in &self.robot.joints {
-            if let Some(damping) = self.names.damping(joint) {
-                line(format!("{damping} = {:?}", joint.damping));
-            }
-        }
-        line("\n[gravity]\nacceleration = [0, 0, \"-g\"]".into());
-        let apart: Vec<_> = starts.iter().filter(|(_, start)| *start != 0.0).collect();
+        let section = |title: &str, lines: Vec<String>| match lines.as_slice() {
+            [] => String::new(),
+            lines => format!("\n[{title}]\n{}\n", lines.join("\n")),
+        };
+        let (weight, gravity) = self.gravity();
+        let parameters = weight.into_iter().chain(additions::parameters(self.robot, &self.names)).collect();
+        text += &section("parameters", parameters);
+        text += &section("inputs", additions::inputs(self.robot, &self.names));
+        text += &section("gravity", vec![gravity]);
+        let mut line = |line: String| {
+            text += &line;
+            text.push('\n');
+        };
+        let coupled = additions::coupled_starts(self.robot, starts);
+        let apart: Vec<_> = starts.iter().chain(&coupled).filter(|(_, start)| *start != 0.0).collect();
         if !apart.is_empty() {
             line("\n[coordinates]".into());
             for (joint, start) in apart {
@@ -213,10 +238,12 @@ impl<'a> Tree<'a> {
                 line(format!("{x} = {start:?}"));
             }
         }
-        for (link, joint) in &self.order {
+        for (link, joint) in self.order.iter().filter(|(link, _)| !link.is_world) {
             line(self.body(link, *joint, floats));
         }
-        if !starts.is_empty() {
+        additions::loops(self.robot, &self.names).into_iter().for_each(&mut line);
+        let constraints = additions::constraints(self.robot, &self.names);
+        if !starts.is_empty() || !constraints.is_empty() {
             line("\n[constraints]".into());
         }
         for (joint, _) in starts {
@@ -236,17 +263,24 @@ impl<'a> Tree<'a> {
             };
             line(format!("mimic_{own} = \"{own} - {factor}{other}{offset}\""));
         }
-        let damped: Vec<(&Joint, &str)> =
-            self.robot.joints.iter().filter_map(|joint| Some((joint, self.names.damping(joint)?))).collect();
-        if !damped.is_empty() {
-            line("\n[forces]".into());
-        }
-        for (joint, damping) in damped {
-            for velocity in self.names.velocities(joint) {
-                line(format!("\"{velocity}\" = \"-{damping}*{velocity}\""));
-            }
-        }
+        constraints.into_iter().for_each(&mut line);
+        text += &section("lagrangian", additions::lagrangian(self.robot, &self.names));
+        text += &section("forces", additions::forces(self.robot, &self.names));
         text
+    }
+
+    /// A parameter for the weight, if gravity is vertical, and the line of `[gravity]`.
+    fn gravity(&self) -> (Option<String>, String) {
+        match self.robot.gravity {
+            None => {
+                let weight = format!("g = 9.81 # {} says nothing of gravity", self.robot.format);
+                (Some(weight), "acceleration = [0, 0, \"-g\"]".to_owned())
+            }
+            Some([0.0, 0.0, down]) if down < 0.0 => {
+                (Some(format!("g = {:?}", -down)), "acceleration = [0, 0, \"-g\"]".to_owned())
+            }
+            Some(acceleration) => (None, format!("acceleration = {}", list(&acceleration))),
+        }
     }
 
     /// The section of a body.
@@ -298,12 +332,16 @@ impl<'a> Tree<'a> {
             Kind::Planar => "planar",
             Kind::Spherical => "spherical",
             Kind::Universal => "universal",
+            Kind::Screw => "screw",
         };
         let mut text = format!("joint = {{ kind = \"{kind}\"");
         if joint.kind == Kind::Universal {
             let _ = write!(text, ", axes = [{}, {}]", list(&joint.axis), list(&joint.second_axis));
         } else if joint.kind.has_axis() {
             let _ = write!(text, ", axis = {}", list(&joint.axis));
+        }
+        if joint.kind == Kind::Screw {
+            let _ = write!(text, ", pitch = {:?}", joint.pitch);
         }
         let Pose { xyz, rpy: [roll, pitch, yaw] } = joint.origin;
         if xyz != [0.0; 3] {
@@ -339,14 +377,6 @@ fn angle(angle: f64) -> String {
         };
     }
     format!("{angle:?}")
-}
-
-fn list(numbers: &[f64]) -> String {
-    let numbers: Vec<String> = numbers
-        .iter()
-        .map(|number| if *number == 0.0 { "0".into() } else { format!("{number:?}") })
-        .collect();
-    format!("[{}]", numbers.join(", "))
 }
 
 /// The inertia matrix in axes of the link; only the three moments of inertia if the products of inertia vanish.

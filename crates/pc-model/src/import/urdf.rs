@@ -1,22 +1,21 @@
 //! Reads the text of a URDF file as a robot.
 
-use roxmltree::Node;
+use roxmltree::{Document, Node};
 
 use crate::diagnostics::source::Source;
 use crate::import::error::UrdfError;
 use crate::import::leftover;
 use crate::import::pose::{Pose, of_quaternion};
 use crate::import::robot::{Inertial, Joint, Kind, Link, Mimic, Robot};
-use crate::import::xml::{Reader, child, parse};
+use crate::import::xml::{Reader, child};
 
 /// Reads a robot.
 ///
 /// # Errors
 /// [`UrdfError`] at the first invalid element or attribute.
-pub(crate) fn read(source: &Source) -> Result<Robot, UrdfError> {
-    let document = parse(source)?;
+pub(crate) fn read(source: &Source, document: &Document<'_>) -> Result<Robot, UrdfError> {
     let xml = Reader { source };
-    leftover::check(&xml, &document)?;
+    leftover::check(&xml, document)?;
     Urdf { xml }.robot(document.root_element())
 }
 
@@ -34,8 +33,11 @@ impl Urdf<'_> {
                 "the root of URDF is <robot>",
             ));
         }
-        let mut robot =
-            Robot { name: root.attribute("name").unwrap_or_default().to_owned(), ..Robot::default() };
+        let mut robot = Robot {
+            format: "URDF",
+            name: root.attribute("name").unwrap_or_default().to_owned(),
+            ..Robot::default()
+        };
         for node in root.children().filter(Node::is_element) {
             match node.tag_name().name() {
                 "link" => {
@@ -61,10 +63,7 @@ impl Urdf<'_> {
                     robot.joints.push(joint);
                 }
                 "material" => {}
-                other => match robot.left_out.iter_mut().find(|(name, _)| name == other) {
-                    Some((_, count)) => *count += 1,
-                    None => robot.left_out.push((other.to_owned(), 1)),
-                },
+                other => robot.leave_out(other),
             }
         }
         if robot.links.is_empty() {
@@ -92,7 +91,7 @@ impl Urdf<'_> {
             }
         }
         let inertial = child(node, "inertial").map(|inertial| self.inertial(inertial)).transpose()?;
-        Ok(Link { name, span: self.xml.tag(node), inertial, meshes: files })
+        Ok(Link { inertial, meshes: files, ..Link::empty(&name, self.xml.tag(node)) })
     }
 
     fn inertial(&self, node: Node<'_, '_>) -> Result<Inertial, UrdfError> {
@@ -192,8 +191,7 @@ impl Urdf<'_> {
             damping: dynamics("damping")?,
             friction: dynamics("friction")?,
             mimic,
-            armature: 0.0,
-            remarks: Vec::new(),
+            ..Joint::default()
         })
     }
 
