@@ -1,4 +1,5 @@
-//! What a model has besides bodies on joints: springs, rotors, actuators, couplings and loops, as lines of text.
+//! What a model has besides bodies on joints: springs, rotors, actuators, couplings and loops, as lines of
+//! text.
 
 use std::fmt::Write;
 
@@ -106,7 +107,8 @@ pub(crate) fn constraints(robot: &Robot, names: &Names<'_>) -> Vec<String> {
     let welds = welds.map(|(place, closure)| {
         let name = names.closure(place);
         let [one, two] = closure.places.map(|place| place.rotation());
-        // The x-axis of one stays perpendicular to the y-axis of the other, both turned about the axis of the loop.
+        // The x-axis of one stays perpendicular to the y-axis of the other, both turned about the axis of the
+        // loop.
         let terms: Vec<String> = (1..=3)
             .map(|k| {
                 let [one, two] = [(&one, 0, "a"), (&two, 1, "b")]
@@ -119,7 +121,8 @@ pub(crate) fn constraints(robot: &Robot, names: &Names<'_>) -> Vec<String> {
     couplings.chain(welds).collect()
 }
 
-/// The component k along fixed axes of an axis of a frame of a body, by the rotation matrix of the body at a point.
+/// The component k along fixed axes of an axis of a frame of a body, by the rotation matrix of the body at a
+/// point.
 fn component(point: &str, k: usize, rotation: &Rotation, axis: usize) -> String {
     let mut sum = String::new();
     let mut count = 0;

@@ -1,8 +1,8 @@
 //! Reads the text of an MJCF file, MuJoCo's format, as a robot.
 //!
-//! A body with several joints becomes a chain of links, of which the last one has the mass. The origin of a link
-//! is the place of its joint, so that what is placed in a body is moved by as much. A coordinate vanishes in the
-//! position of the file, where that of MuJoCo is the joint's `ref`.
+//! A body with several joints becomes a chain of links, of which the last one has the mass. The origin of a
+//! link is the place of its joint, so that what is placed in a body is moved by as much. A coordinate
+//! vanishes in the position of the file, where that of MuJoCo is the joint's `ref`.
 
 mod actuators;
 mod bodies;

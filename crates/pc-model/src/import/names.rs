@@ -46,7 +46,8 @@ impl<'a> Names<'a> {
         for joint in joints().filter(|joint| joint.kind.is_single()) {
             coordinates.insert(joint.name.as_str(), unused(&joint.name, &[], &mut [&mut taken]));
         }
-        // The names of bodies are labels, but those of joints with several coordinates begin the names of these.
+        // The names of bodies are labels, but those of joints with several coordinates begin the names of
+        // these.
         let mut bodies = HashMap::new();
         let mut labels: HashSet<String> = HashSet::from(["world".to_owned()]);
         for (place, (link, joint)) in order.iter().enumerate() {

@@ -29,7 +29,8 @@ impl Robot {
         self.joints.iter().find(|joint| joint.name == name)
     }
 
-    /// Rounds all poses to fifteen digits, which leaves out the rounding errors of frames that were put together.
+    /// Rounds all poses to fifteen digits, which leaves out the rounding errors of frames that were put
+    /// together.
     pub(crate) fn tidy(&mut self) {
         self.joints.iter_mut().for_each(|joint| joint.origin = joint.origin.tidied());
         self.loops.iter_mut().for_each(|closure| closure.places = closure.places.map(|place| place.tidied()));
@@ -173,7 +174,8 @@ pub(crate) struct Mimic {
     pub(crate) offset: f64,
 }
 
-/// An actuator, whose force on a joint is gain u + constant + coordinate x + velocity x', where u is its control.
+/// An actuator, whose force on a joint is gain u + constant + coordinate x + velocity x', where u is its
+/// control.
 #[derive(Clone, Debug)]
 pub(crate) struct Actuator {
     pub(crate) name: String,

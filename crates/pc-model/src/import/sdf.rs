@@ -1,7 +1,7 @@
 //! Reads the text of an SDF file, the format of Gazebo, as a robot.
 //!
-//! Links that hang on nothing move freely, as links of SDF do. Of several joints that have the same child, one
-//! carries it, and the others close loops. The origin of a link of the robot is the place of its joint.
+//! Links that hang on nothing move freely, as links of SDF do. Of several joints that have the same child,
+//! one carries it, and the others close loops. The origin of a link of the robot is the place of its joint.
 
 mod content;
 mod frames;

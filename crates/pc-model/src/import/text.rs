@@ -25,8 +25,8 @@ pub struct ImportOptions {
 
 /// The text of the model of a robot in URDF, and notes on what was left out and changed.
 ///
-/// Bodies have the names of links, and coordinates those of joints, changed if they are not valid names. Limits
-/// and meshes become comments.
+/// Bodies have the names of links, and coordinates those of joints, changed if they are not valid names.
+/// Limits and meshes become comments.
 ///
 /// # Errors
 /// [`UrdfError`], which gives the file, line and column.
@@ -189,8 +189,8 @@ impl<'a> Tree<'a> {
         let moments = self.robot.links.iter().filter_map(|link| {
             let [a, b, c] = impossible(link.inertial.as_ref()?)?.map(rounded);
             Some(format!(
-                "no body has the principal moments of inertia {a}, {b} and {c} of the link `{}`: one is negative, or \
-                 larger than the sum of the others",
+                "no body has the principal moments of inertia {a}, {b} and {c} of the link `{}`: one is \
+                 negative, or larger than the sum of the others",
                 link.name
             ))
         });
@@ -379,7 +379,8 @@ fn angle(angle: f64) -> String {
     format!("{angle:?}")
 }
 
-/// The inertia matrix in axes of the link; only the three moments of inertia if the products of inertia vanish.
+/// The inertia matrix in axes of the link; only the three moments of inertia if the products of inertia
+/// vanish.
 fn moments(inertial: &Inertial) -> Vec<f64> {
     let [xx, yy, zz, xy, yz, xz] = along_axes_of_the_link(inertial);
     match [xy, yz, xz] == [0.0; 3] {

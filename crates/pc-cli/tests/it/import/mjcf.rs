@@ -210,6 +210,10 @@ const REFUSED: &[(&str, &str)] = &[
         "r.xml:2:12: <link b>: the link `b` can move, and neither it nor what hangs on it has mass\n    <worldbody><body name=\"b\"><joint/></body></worldbody>\n               ^^^^^\n  help: give it an <inertial>, make its joint `fixed`, or fix all such joints by `--fix-massless`",
     ),
     (
+        "<worldbody><frame><joint/></frame></worldbody>",
+        "r.xml:2:19: <joint>: <joint> has no place in <frame>\n    <worldbody><frame><joint/></frame></worldbody>\n                      ^^^^^^\n  help: joints and masses are those of a <body>",
+    ),
+    (
         "<worldbody/>",
         "r.xml:1:1: <mujoco>: there is no <body>\n    <mujoco>\n    ^^^^^^^\n  help: a model has bodies in its <worldbody>",
     ),

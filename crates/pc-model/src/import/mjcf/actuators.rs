@@ -1,4 +1,5 @@
-//! Actuators of an MJCF file whose force is affine in their control, the coordinate and the velocity of a joint.
+//! Actuators of an MJCF file whose force is affine in their control, the coordinate and the velocity of a
+//! joint.
 
 use roxmltree::Node;
 

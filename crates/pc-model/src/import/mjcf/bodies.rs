@@ -102,14 +102,19 @@ impl<'e, 'a, 'd> Bodies<'e, 'a, 'd> {
                     frame: around.frame,
                     class: around.class.clone(),
                 }),
-                "joint" | "freejoint" | "inertial" | "geom" | "site" | "camera" | "light" => {}
+                "geom" | "site" | "camera" | "light" => {}
+                "joint" | "freejoint" | "inertial" if node.has_tag_name("body") => {}
                 "plugin" => {
                     let message = "<plugin> has no place in a model";
                     return Err(self.defaults.xml.wrong(child, message, "leave the plugin out"));
                 }
                 other => {
-                    let message = format!("there is no element <{other}> in a body");
-                    return Err(self.defaults.xml.wrong(child, message, "correct its name"));
+                    let message = format!("<{other}> has no place in <{}>", node.tag_name().name());
+                    return Err(self.defaults.xml.wrong(
+                        child,
+                        message,
+                        "joints and masses are those of a <body>",
+                    ));
                 }
             }
         }

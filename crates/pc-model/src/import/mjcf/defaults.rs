@@ -85,8 +85,8 @@ pub(super) struct Element<'e, 'a, 'd> {
 }
 
 impl<'d> Element<'_, '_, 'd> {
-    /// The elements in which an attribute may stand: this one, then the defaults of its class, of the class from
-    /// which that inherits, and so on.
+    /// The elements in which an attribute may stand: this one, then the defaults of its class, of the class
+    /// from which that inherits, and so on.
     fn sources(&self) -> impl Iterator<Item = Node<'d, 'd>> {
         let tag = self.node.tag_name().name();
         let is_actuator = ACTUATORS.contains(&tag);

@@ -48,8 +48,8 @@ impl Shape {
                 [across, across, radius * radius / 2.0]
             }
             Shape::Capsule { radius, half } => {
-                // The shares of the cylinder and of the ball of both ends; these lie (half + 3/8 radius) away from
-                // the centre.
+                // The shares of the cylinder and of the ball of both ends; these lie (half + 3/8 radius) away
+                // from the centre.
                 let ends = 4.0 / 3.0 * radius / (2.0 * half + 4.0 / 3.0 * radius);
                 let middle = 1.0 - ends;
                 let square = radius * radius;

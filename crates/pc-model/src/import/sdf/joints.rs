@@ -123,8 +123,8 @@ pub(super) fn joint<'d>(
     })
 }
 
-/// The advance of a screw per radian: right-handed by `screw_thread_pitch` in lengths per turn, left-handed by
-/// `thread_pitch` in radians per length.
+/// The advance of a screw per radian: right-handed by `screw_thread_pitch` in lengths per turn, left-handed
+/// by `thread_pitch` in radians per length.
 fn pitch(xml: &Content<'_>, node: Node<'_, '_>) -> Result<f64, UrdfError> {
     if let Some(pitch) = child(node, "screw_thread_pitch") {
         return Ok(xml.number(pitch)? / TAU);
