@@ -1,9 +1,10 @@
 //! Converts models in other formats to text models.
 //!
-//! A robot in URDF becomes the text of a model. Read `robot` first, the contents of such a file, with frames at a
-//! `pose` and moments of `inertia`. `urdf` reads the `xml` of the file, with an `error` that shows the place in the
-//! file; `leftover` finds macros that were not expanded, and `massless` what moves without mass. `text` writes the
-//! model, whose names are chosen by `names`.
+//! A robot in URDF, MJCF or SDF becomes the text of a model. Read `robot` first, the contents of such a file,
+//! with frames at a `pose` and moments of `inertia`. `urdf`, `mjcf` and `sdf` read the `xml` of the file,
+//! with an `error` that shows the place in the file; `leftover` finds macros that were not expanded, and
+//! `massless` what moves without mass. `text` writes the model, with the `additions` to its bodies on joints,
+//! whose names are chosen by `names`.
 
 mod additions;
 mod error;
@@ -12,7 +13,7 @@ mod leftover;
 mod massless;
 mod mjcf;
 mod names;
-mod pose;
+pub(crate) mod pose;
 mod robot;
 mod sdf;
 mod text;

@@ -46,6 +46,11 @@ Examples:
   xacro robot.urdf.xacro | pc import - -o robot.toml
   pc import robot.urdf --fix-massless -o robot.toml";
 
+pub(super) const EXPORT: &str = "\
+Examples:
+  pc export my-arm.toml -o my-arm.urdf
+  pc export my-arm.toml --set damping=0 | pc import - -o undamped.toml";
+
 pub(super) const MODELS: &str = "\
 Examples:
   pc models

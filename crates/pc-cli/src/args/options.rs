@@ -397,6 +397,17 @@ pub struct ImportArguments {
     pub output: Option<PathBuf>,
 }
 
+/// Arguments of `pc export`.
+#[derive(Clone, Debug, Args)]
+pub struct ExportArguments {
+    /// The model.
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// The file to write; standard output if it is not given
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
 /// How a result is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Format {

@@ -1,6 +1,7 @@
 //! `pc import`: robots move like the same models written by hand, and errors are shown with
 //! their place.
 
+mod exported;
 mod mjcf;
 mod motion;
 mod quirks;
