@@ -6,7 +6,7 @@
 //! `equilibria` the states of rest, `run` integrates a model, `sweep` many members of one, whose shards `merge` puts together,
 //! `compare` compares two motions,
 //! `report` makes a page of all this, `emit` writes equations as source, or by `fmu` as an FMU,
-//! `bench` measures them, and `import` makes models from files in other formats. `completions`,
+//! `bench` measures them, `import` makes models from files in other formats, and `export` makes such files. `completions`,
 //! `man` and `version` are about the program.
 
 pub mod bench;
@@ -16,6 +16,7 @@ pub mod completions;
 pub mod derive;
 pub mod emit;
 pub mod equilibria;
+pub mod export;
 pub mod fmu;
 pub mod import;
 pub mod linearize;
@@ -57,6 +58,7 @@ pub fn command(command: &Command) -> Result<(), CliError> {
             None => emit::command(arguments),
         },
         Command::Import(arguments) => import::command(arguments),
+        Command::Export(arguments) => export::command(arguments),
         Command::Models(arguments) => models::command(arguments),
         Command::Schema(arguments) => schema::command(arguments),
         Command::Completions(arguments) => completions::command(arguments),

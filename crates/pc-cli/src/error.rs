@@ -140,7 +140,7 @@ pub enum CliError {
     /// Something wrong with an FMU.
     #[error(transparent)]
     Fmu(FmuError),
-    /// Something wrong with a robot in URDF.
+    /// Something wrong with the file of a robot.
     #[error(transparent)]
     Urdf(#[from] UrdfError),
     /// An option that has no effect on what a sweep computes for each member.

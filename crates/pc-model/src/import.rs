@@ -1,14 +1,24 @@
 //! Converts models in other formats to text models.
 //!
-//! A robot in URDF becomes the text of a model. Read `robot` first, the contents of such a file; `urdf` reads the
-//! file, with an `error` that shows the place in the file, and `text` writes the model, whose names are chosen by
-//! `names`.
+//! A robot in URDF, MJCF or SDF becomes the text of a model. Read `robot` first, the contents of such a file,
+//! with frames at a `pose` and moments of `inertia`. `urdf`, `mjcf` and `sdf` read the `xml` of the file,
+//! with an `error` that shows the place in the file; `leftover` finds macros that were not expanded, and
+//! `massless` what moves without mass. `text` writes the model, with the `additions` to its bodies on joints,
+//! whose names are chosen by `names`.
 
+mod additions;
 mod error;
+mod inertia;
+mod leftover;
+mod massless;
+mod mjcf;
 mod names;
+pub(crate) mod pose;
 mod robot;
+mod sdf;
 mod text;
 mod urdf;
+mod xml;
 
 pub use error::UrdfError;
-pub use text::model_of_urdf;
+pub use text::{ImportOptions, model_of_robot, model_of_urdf};

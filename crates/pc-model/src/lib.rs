@@ -36,6 +36,8 @@ mod assembly;
 mod deep;
 mod diagnostics;
 pub mod document;
+#[cfg(feature = "urdf")]
+pub mod export;
 mod flow;
 #[cfg(feature = "urdf")]
 pub mod import;

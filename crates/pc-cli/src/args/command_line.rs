@@ -8,7 +8,8 @@ use crate::args::examples;
 use crate::args::linear::{EquilibriaArguments, LinearizeArguments};
 use crate::args::models::ModelsArguments;
 use crate::args::options::{
-    CheckArguments, DeriveArguments, EmitArguments, ImportArguments, RunArguments, TheoryArguments,
+    CheckArguments, DeriveArguments, EmitArguments, ExportArguments, ImportArguments, RunArguments,
+    TheoryArguments,
 };
 use crate::args::report::{AnimateArguments, ReportArguments};
 use crate::args::sweep::{MergeArguments, SweepArguments};
@@ -82,9 +83,12 @@ pub enum Command {
     /// Write the equations as C or Rust source without dependencies
     #[command(after_help = examples::EMIT)]
     Emit(EmitArguments),
-    /// Convert a robot in URDF into a model
+    /// Convert a robot in URDF, MJCF or SDF into a model
     #[command(after_help = examples::IMPORT)]
     Import(ImportArguments),
+    /// Write a model of bodies on joints as a robot in URDF
+    #[command(after_help = examples::EXPORT)]
+    Export(ExportArguments),
     /// List the built-in models, or print one
     #[command(after_help = examples::MODELS)]
     Models(ModelsArguments),

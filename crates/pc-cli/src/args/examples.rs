@@ -43,7 +43,13 @@ pub(super) const IMPORT: &str = "\
 Examples:
   pc import robot.urdf -o robot.toml
   pc import robot.urdf --floating | pc check -
-  xacro robot.urdf.xacro | pc import - -o robot.toml";
+  xacro robot.urdf.xacro | pc import - -o robot.toml
+  pc import robot.urdf --fix-massless -o robot.toml";
+
+pub(super) const EXPORT: &str = "\
+Examples:
+  pc export my-arm.toml -o my-arm.urdf
+  pc export my-arm.toml --set damping=0 | pc import - -o undamped.toml";
 
 pub(super) const MODELS: &str = "\
 Examples:

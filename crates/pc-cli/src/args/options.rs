@@ -383,13 +383,27 @@ pub enum Lang {
 /// Arguments of `pc import`.
 #[derive(Clone, Debug, Args)]
 pub struct ImportArguments {
-    /// The robot, in URDF, with macros expanded; `-` for standard input
+    /// The robot, in URDF with macros expanded, in MJCF or in SDF; `-` for standard input
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
-    /// Let the root link move freely; otherwise it is fixed
+    /// In URDF: let the root link move freely; otherwise it is fixed
     #[arg(long)]
     pub floating: bool,
+    /// Fix the joints that move no mass, with a note for each; otherwise they are an error
+    #[arg(long)]
+    pub fix_massless: bool,
     /// The model to write; standard output if it is not given
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
+/// Arguments of `pc export`.
+#[derive(Clone, Debug, Args)]
+pub struct ExportArguments {
+    /// The model.
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// The file to write; standard output if it is not given
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 }

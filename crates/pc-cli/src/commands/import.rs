@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use pc_model::Source;
 use pc_model::document::{read_bounded, read_file_bounded};
-use pc_model::import::model_of_urdf;
+use pc_model::import::{ImportOptions, model_of_robot};
 use pc_run::files::error::FileError;
 use pc_run::files::target::{Target, file};
 
@@ -13,7 +13,7 @@ use crate::error::CliError;
 use crate::output::standard_output::print;
 use crate::terminal::text::say;
 
-/// Writes the text model of a robot in URDF.
+/// Writes the text model of a robot in URDF, MJCF or SDF.
 ///
 /// # Errors
 /// [`CliError`].
@@ -33,7 +33,8 @@ pub fn command(arguments: &ImportArguments) -> Result<(), CliError> {
             return Err(CliError::Read { name, source });
         }
     };
-    let (text, left_out) = model_of_urdf(&source, arguments.floating)?;
+    let options = ImportOptions { floating: arguments.floating, fix_massless: arguments.fix_massless };
+    let (text, left_out) = model_of_robot(&source, options)?;
     left_out.iter().for_each(|left| say(format_args!("note: {left}\n")));
     match place {
         None => print(|out| out.write_all(text.as_bytes())),

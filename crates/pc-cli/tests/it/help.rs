@@ -70,6 +70,9 @@ fn the_examples_run() {
     for file in ["my-model.toml", "other-model.toml"] {
         fs::write(here.join(file), pc_cli::args::tools::Kind::Coordinates.text()).expect("written");
     }
+    let arm = "[parameters]\ndamping = 0.1\n[bodies.arm]\njoint = { kind = \"revolute\", axis = [0, 1, 0] }\n\
+               mass = 1.0\ncenter = [0, 0, -0.5]\n[forces]\narm = \"-damping*arm'\"\n";
+    fs::write(here.join("my-arm.toml"), arm).expect("written");
     let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/robots/arm.urdf");
     fs::copy(robot, here.join("robot.urdf")).expect("copied");
     let mut count = 0;

@@ -1,43 +1,19 @@
-//! `pc import`: robots in URDF move like the same models written by hand, and errors are shown with
+//! `pc import`: robots move like the same models written by hand, and errors are shown with
 //! their place.
+
+mod exported;
+mod mjcf;
+mod motion;
+mod quirks;
+mod sdf;
 
 use std::process::Command;
 
-use pc_mech::{Graph, VectorField};
+use pc_mech::VectorField;
+use pc_model::Source;
 use pc_model::import::model_of_urdf;
-use pc_model::{Document, Flow, Model, Source, Variables};
 
-fn robot(name: &str) -> String {
-    let path = format!("{}/../../tests/robots/{name}.urdf", env!("CARGO_MANIFEST_DIR"));
-    std::fs::read_to_string(path).unwrap()
-}
-
-fn imported(name: &str, floats: bool) -> (String, Vec<String>) {
-    let source = Source::new(format!("{name}.urdf"), robot(name));
-    model_of_urdf(&source, floats).unwrap_or_else(|error| panic!("{error}"))
-}
-
-fn flow(text: &str) -> Flow {
-    let document =
-        Document::parse(Source::new("m.toml", text)).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    let (model, graph) = (Model::new(document), Graph::new());
-    let assembly = model.assemble(&graph).unwrap_or_else(|error| panic!("{error}"));
-    Flow::new(&model, &assembly, Variables::QuasiVelocities).unwrap()
-}
-
-fn rates(flow: &mut Flow, state: &[f64]) -> Vec<f64> {
-    let mut rates = vec![f64::NAN; state.len()];
-    flow.motion.rhs(0.0, state, &mut rates).unwrap();
-    rates
-}
-
-#[track_caller]
-fn alike(one: &[f64], two: &[f64]) {
-    assert_eq!(one.len(), two.len());
-    let apart = one.iter().zip(two).map(|(a, b)| (a - b).abs() / a.abs().max(1.0)).fold(0.0, f64::max);
-    // Rounding of a few hundred operations, with a mass matrix of condition number 1e4.
-    assert!(apart < 1e-10, "{apart}\n{one:?}\n{two:?}");
-}
+use motion::{alike, flow, imported, rates, text_of};
 
 type Matrix = [[String; 3]; 3];
 
@@ -113,7 +89,9 @@ fn an_arm_moves_as_by_hand() {
         [
             "one <transmission> is left out",
             "2 <gazebo> are left out",
-            "the dry friction 0.1 of the joint `shoulder-pan` is left out"
+            "the dry friction 0.1 of the joint `shoulder-pan` is left out",
+            "no body has the principal moments of inertia 0.0099002, 0.05 and 0.0600998 of the link `upper arm`: one is \
+             negative, or larger than the sum of the others"
         ]
     );
     for remark in [
@@ -175,13 +153,30 @@ fn the_program_writes_what_the_library_makes() {
     assert_eq!(refused.status.code(), Some(3));
 }
 
+#[test]
+fn the_program_fixes_links_without_mass_on_request() {
+    let directory = tempfile::tempdir().unwrap();
+    let file = directory.path().join("r.urdf");
+    std::fs::write(&file, quirks::ENDS).unwrap();
+    let program = |options: &[&str]| {
+        let run = Command::new(env!("CARGO_BIN_EXE_pc")).arg("import").arg(&file).args(options).output();
+        let run = run.unwrap();
+        (run.status.code(), String::from_utf8(run.stderr).unwrap())
+    };
+    let (code, complaint) = program(&[]);
+    assert_eq!(code, Some(3));
+    assert!(complaint.contains("or fix all such joints by `--fix-massless`"), "{complaint}");
+    let (code, said) = program(&["--fix-massless"]);
+    assert_eq!((code, said.lines().count()), (Some(0), 2), "{said}");
+}
+
 const LINK: &str = "<link name=\"a\"><inertial><mass value=\"1\"/>\n<inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link>\n";
 
 /// A text that occurs in the robot, and the message.
 const REFUSED: &[(&str, &str)] = &[
     (
         "<robot><link name='a'></robot>",
-        "r.urdf:1:23: not valid XML: expected 'link' tag, not 'robot' at 1:23\n    <robot><link name='a'></robot>\n                          ^\n  help: URDF is XML, its root is <robot>",
+        "r.urdf:1:23: not valid XML: expected 'link' tag, not 'robot' at 1:23\n    <robot><link name='a'></robot>\n                          ^\n  help: the formats that can be imported are XML",
     ),
     (
         "<sdf/>",
@@ -197,7 +192,7 @@ const REFUSED: &[(&str, &str)] = &[
     ),
     (
         "<robot>\nLINK<joint name=\"j\" type=\"screw\"><parent link=\"a\"/><child link=\"b\"/></joint>\n</robot>",
-        "r.urdf:4:23: <joint j>: there is no joint of type `screw`\n    <joint name=\"j\" type=\"screw\"><parent link=\"a\"/><child link=\"b\"/></joint>\n                          ^^^^^\n  help: the types are fixed, revolute, continuous, prismatic, floating, planar",
+        "r.urdf:4:23: <joint j>: there is no joint of type `screw`\n    <joint name=\"j\" type=\"screw\"><parent link=\"a\"/><child link=\"b\"/></joint>\n                          ^^^^^\n  help: the types are fixed, revolute, continuous, prismatic, floating, planar, spherical, universal",
     ),
     (
         "<robot>\nLINK<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"a\"/><axis xyz=\"0 0 0\"/></joint>\n</robot>",
@@ -213,7 +208,7 @@ const REFUSED: &[(&str, &str)] = &[
     ),
     (
         "<robot>\nLINK<link name=\"b\"/>\n<joint name=\"j\" type=\"continuous\"><parent link=\"a\"/><child link=\"b\"/></joint>\n</robot>",
-        "r.urdf:4:1: <link b>: the link `b` can move, and neither it nor what hangs on it has mass\n    <link name=\"b\"/>\n    ^^^^^\n  help: give it an <inertial>, or make its joint `fixed`",
+        "r.urdf:4:1: <link b>: the link `b` can move, and neither it nor what hangs on it has mass\n    <link name=\"b\"/>\n    ^^^^^\n  help: give it an <inertial>, make its joint `fixed`, or fix all such joints by `--fix-massless`",
     ),
     (
         "<robot>\nLINK<joint name=\"j\" type=\"fixed\"><origin xyz=\"0 1\"/><parent link=\"a\"/><child link=\"b\"/></joint>\n</robot>",
@@ -222,6 +217,30 @@ const REFUSED: &[(&str, &str)] = &[
     (
         "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\">\n<xacro:macro name=\"m\"/>\n</robot>",
         "r.urdf:2:1: <macro m>: it is a macro of xacro\n    <xacro:macro name=\"m\"/>\n    ^^^^^^^^^^^^\n  help: expand the macros first: `xacro robot.xacro > robot.urdf`",
+    ),
+    (
+        "<robot>\nLINK\n<xacro:include filename=\"a.xacro\"/></robot>",
+        "r.urdf:5:2: it is a macro of xacro\n    <xacro:include filename=\"a.xacro\"/></robot>\n     ^^^^^^^^^^^^^\n  help: expand the macros first: `xacro robot.xacro > robot.urdf`",
+    ),
+    (
+        "<robot>\nLINK<link name=\"b\"><inertial><mass value=\"${2*m}\"/></inertial></link></robot>",
+        "r.urdf:4:39: <mass>: `${2*m}` is an expression of xacro\n    <link name=\"b\"><inertial><mass value=\"${2*m}\"/></inertial></link></robot>\n                                          ^^^^^^\n  help: expand the macros first: `xacro robot.xacro > robot.urdf`",
+    ),
+    (
+        "<robot>\nLINK<gazebo><plugin>\n  <file>$(find arm)/a.yaml</file></plugin></gazebo></robot>",
+        "r.urdf:5:9: <file>: `$(find arm)` is an expression of xacro\n      <file>$(find arm)/a.yaml</file></plugin></gazebo></robot>\n            ^^^^^^^^^^^\n  help: expand the macros first: `xacro robot.xacro > robot.urdf`",
+    ),
+    (
+        "<robot>\nLINK<link name=\"b\"/>\n<joint name=\"j\" type=\"fixed\"><origin quat_xyzw=\"0 0 0 2\"/><parent link=\"a\"/><child link=\"b\"/></joint>\n</robot>",
+        "r.urdf:5:49: <joint j>: the length of the quaternion is 2\n    <joint name=\"j\" type=\"fixed\"><origin quat_xyzw=\"0 0 0 2\"/><parent link=\"a\"/><child link=\"b\"/></joint>\n                                                    ^^^^^^^\n  help: it is 1: x, y, z are the axis times sin(φ/2), w is cos(φ/2)",
+    ),
+    (
+        "<robot>\nLINK<link name=\"b\"/>\n<joint name=\"j\" type=\"universal\"><parent link=\"a\"/><child link=\"b\"/></joint>\n</robot>",
+        "r.urdf:5:1: <joint j>: it has no <axis2>\n    <joint name=\"j\" type=\"universal\"><parent link=\"a\"/><child link=\"b\"/></joint>\n    ^^^^^^\n  help: write <axis2 xyz=\"0 1 0\"/>: the body turns about <axis>, then about <axis2>",
+    ),
+    (
+        "<robot>\nLINK<link name=\"b\"/>\n<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/></joint>\n<link name=\"c\"/>\n<joint name=\"k\" type=\"revolute\"><parent link=\"a\"/><child link=\"c\"/><mimic joint=\"j\"/></joint>\n</robot>",
+        "r.urdf:4:1: <link b>: the link `b` can move, and neither it nor what hangs on it has mass\n    <link name=\"b\"/>\n    ^^^^^\n  help: `k` mimics its joint: let that move by itself, and mimic it",
     ),
 ];
 
@@ -239,10 +258,6 @@ fn what_is_wrong_is_shown_where_it_stands() {
         }
     }
     assert!(complaints.is_empty(), "{}", complaints.join("\n\n"));
-}
-
-fn text_of(urdf: &str) -> (String, Vec<String>) {
-    model_of_urdf(&Source::new("r.urdf", urdf), false).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// A link of mass 2 on a joint, on a base that stands.

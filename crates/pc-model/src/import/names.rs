@@ -4,12 +4,22 @@ use std::collections::{HashMap, HashSet};
 
 use pc_expr::parse::{FUNCTIONS, is_name};
 
-use crate::import::robot::{Joint, Kind, Link};
+use crate::import::massless::Order;
+use crate::import::robot::{Actuator, Joint, Kind, Robot, WORLD};
 
-/// The suffixes of the names of a body's coordinates and velocities, if its joint has several coordinates.
-const PLANAR: [&str; 3] = ["x'", "y'", "φ'"];
-const FLOATING: [&str; 6] = ["v1", "v2", "v3", "ω1", "ω2", "ω3"];
-const OF_COORDINATES: [&str; 8] = ["x", "y", "z", "φ", "q0", "q1", "q2", "q3"];
+/// The endings of the names of a body's coordinates and velocities, if its joint has several coordinates.
+fn endings(kind: Kind) -> (&'static [&'static str], &'static [&'static str]) {
+    match kind {
+        Kind::Planar => (&["x", "y", "φ"], &["x'", "y'", "φ'"]),
+        Kind::Universal => (&["1", "2"], &["1'", "2'"]),
+        Kind::Spherical => (&["q0", "q1", "q2", "q3"], &["ω1", "ω2", "ω3"]),
+        Kind::Floating => (&["x", "y", "z", "q0", "q1", "q2", "q3"], &["v1", "v2", "v3", "ω1", "ω2", "ω3"]),
+        Kind::Fixed | Kind::Revolute | Kind::Continuous | Kind::Prismatic | Kind::Screw => (&[], &[]),
+    }
+}
+
+/// The endings of the names of the components of a point.
+const POINT: [&str; 12] = ["x", "y", "z", "11", "12", "13", "21", "22", "23", "31", "32", "33"];
 
 /// The names in the model of a robot: those of its links and joints, changed if they are invalid or taken.
 pub(crate) struct Names<'a> {
@@ -17,39 +27,69 @@ pub(crate) struct Names<'a> {
     bodies: HashMap<&'a str, String>,
     /// The names of the coordinates, for joints that have exactly one coordinate.
     coordinates: HashMap<&'a str, String>,
-    /// The names of the damping parameters, for the joints that have such a parameter.
-    dampings: HashMap<&'a str, String>,
+    /// The names of the parameters of joints, by joint and quantity.
+    parameters: HashMap<(String, &'static str), String>,
+    /// The names of the controls of actuators.
+    inputs: HashMap<&'a str, String>,
+    /// The names of the loops.
+    closures: Vec<String>,
 }
 
 impl<'a> Names<'a> {
     /// The names for links, each with the joint by which it is attached; the first link is the root.
-    pub(crate) fn of(order: &[(&'a Link, Option<&'a Joint>)]) -> Names<'a> {
+    pub(crate) fn of(robot: &'a Robot, order: &Order<'a>) -> Names<'a> {
         let mut taken: HashSet<String> =
             HashSet::from(["world", "t", "pi", "energy", "g"].map(str::to_owned));
         taken.extend(FUNCTIONS.iter().map(|function| function.name.to_owned()));
         let joints = || order.iter().filter_map(|(_, joint)| *joint);
         let mut coordinates = HashMap::new();
         for joint in joints().filter(|joint| joint.kind.is_single()) {
-            coordinates.insert(joint.name.as_str(), unused(&joint.name, &[], &mut taken));
+            coordinates.insert(joint.name.as_str(), unused(&joint.name, &[], &mut [&mut taken]));
         }
-        // The names of bodies are labels, but those of free and planar bodies begin the names of their coordinates.
+        // The names of bodies are labels, but those of joints with several coordinates begin the names of
+        // these.
         let mut bodies = HashMap::new();
         let mut labels: HashSet<String> = HashSet::from(["world".to_owned()]);
         for (place, (link, joint)) in order.iter().enumerate() {
-            let names =
-                place == 0 || joint.is_some_and(|joint| !joint.kind.is_single() && joint.kind != Kind::Fixed);
-            let label = match names {
-                true => unused(&link.name, &[&OF_COORDINATES[..], &FLOATING].concat(), &mut taken),
-                false => unused(&link.name, &[], &mut labels),
+            if link.is_world {
+                bodies.insert(link.name.as_str(), WORLD.to_owned());
+                continue;
+            }
+            let kind =
+                if place == 0 { Kind::Floating } else { joint.map_or(Kind::Fixed, |joint| joint.kind) };
+            let (coordinates, velocities) = endings(kind);
+            let label = match coordinates {
+                [] => unused(&link.name, &[], &mut [&mut labels]),
+                _ => unused(&link.name, &[coordinates, velocities].concat(), &mut [&mut labels, &mut taken]),
             };
-            labels.insert(label.clone());
             bodies.insert(link.name.as_str(), label);
         }
-        let mut names = Names { bodies, coordinates, dampings: HashMap::new() };
-        for joint in joints().filter(|joint| joint.damping != 0.0 && joint.kind != Kind::Fixed) {
-            let moves = names.coordinate(joint).unwrap_or_else(|| names.body(&joint.child));
-            let damping = unused(&format!("{moves}_damping"), &[], &mut taken);
-            names.dampings.insert(&joint.name, damping);
+        let mut names = Names {
+            bodies,
+            coordinates,
+            parameters: HashMap::new(),
+            inputs: HashMap::new(),
+            closures: Vec::new(),
+        };
+        for joint in joints() {
+            let moves = names.coordinate(joint).unwrap_or_else(|| names.body(&joint.child)).to_owned();
+            for (quantity, _) in joint.quantities() {
+                let name = unused(&format!("{moves}_{quantity}"), &[], &mut [&mut taken]);
+                names.parameters.insert((joint.name.clone(), quantity), name);
+            }
+        }
+        for actuator in &robot.actuators {
+            let name = unused(&actuator.name, &[], &mut [&mut taken]);
+            names.inputs.insert(&actuator.name, name);
+        }
+        for closure in &robot.loops {
+            // A loop declares the components of two points.
+            let ends = ["a", "b"]
+                .iter()
+                .flat_map(|end| POINT.iter().map(move |component| format!("{end}_{component}")));
+            let ends: Vec<String> = ends.collect();
+            let ends: Vec<&str> = ends.iter().map(String::as_str).collect();
+            names.closures.push(unused(&closure.name, &ends, &mut [&mut taken]));
         }
         names
     }
@@ -64,29 +104,36 @@ impl<'a> Names<'a> {
         self.coordinates.get(joint.name.as_str()).map(String::as_str)
     }
 
-    /// The name of the damping parameter of a joint, if the joint has such a parameter.
-    pub(crate) fn damping(&self, joint: &Joint) -> Option<&str> {
-        self.dampings.get(joint.name.as_str()).map(String::as_str)
+    /// The name of the parameter of a joint for a quantity, if the joint has such a parameter.
+    pub(crate) fn parameter(&self, joint: &Joint, quantity: &'static str) -> Option<&str> {
+        self.parameters.get(&(joint.name.clone(), quantity)).map(String::as_str)
+    }
+
+    /// The name of the control of an actuator.
+    pub(crate) fn input(&self, actuator: &Actuator) -> &str {
+        &self.inputs[actuator.name.as_str()]
+    }
+
+    /// The name of a loop, by its place in the robot.
+    pub(crate) fn closure(&self, place: usize) -> &str {
+        &self.closures[place]
     }
 
     /// The names of the velocities of a joint.
     pub(crate) fn velocities(&self, joint: &Joint) -> Vec<String> {
-        let of_body = |velocities: &[&str]| {
-            let body = self.body(&joint.child);
-            velocities.iter().map(|velocity| format!("{body}_{velocity}")).collect()
-        };
-        match (joint.kind, self.coordinate(joint)) {
-            (Kind::Planar, _) => of_body(&PLANAR),
-            (Kind::Floating, _) => of_body(&FLOATING),
-            (_, Some(x)) => vec![format!("{x}'")],
-            (_, None) => Vec::new(),
+        match self.coordinate(joint) {
+            Some(x) => vec![format!("{x}'")],
+            None => {
+                let body = self.body(&joint.child);
+                endings(joint.kind).1.iter().map(|velocity| format!("{body}_{velocity}")).collect()
+            }
         }
     }
 }
 
 /// The name with invalid characters replaced, and extended if it, or a name `NAME_ENDING` formed from it, is
-/// taken.
-fn unused(name: &str, endings: &[&str], taken: &mut HashSet<String>) -> String {
+/// in one of the sets of taken names, to which these names are then added.
+fn unused(name: &str, endings: &[&str], taken: &mut [&mut HashSet<String>]) -> String {
     let mut own: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     if !is_name(&own) {
         own.insert(0, '_');
@@ -96,9 +143,9 @@ fn unused(name: &str, endings: &[&str], taken: &mut HashSet<String>) -> String {
         let longer = endings.iter().map(|ending| format!("{own}_{ending}"));
         std::iter::once(own.to_owned()).chain(longer).collect()
     };
-    while all(&own).iter().any(|name| taken.contains(name)) {
+    while all(&own).iter().any(|name| taken.iter().any(|taken| taken.contains(name))) {
         own.push('_');
     }
-    taken.extend(all(&own));
+    taken.iter_mut().for_each(|taken| taken.extend(all(&own)));
     own
 }

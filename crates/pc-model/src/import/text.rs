@@ -1,28 +1,62 @@
 //! Writes a robot as the text of a model.
 
-use std::collections::HashSet;
 use std::fmt::Write;
 use std::path::Path;
 
 use crate::diagnostics::source::Source;
+use crate::diagnostics::words::rounded;
+use crate::import::additions::list;
 use crate::import::error::UrdfError;
+use crate::import::inertia::{along_axes_of_the_link, impossible};
+use crate::import::massless;
 use crate::import::names::Names;
-use crate::import::robot::{Inertial, Joint, Kind, Link, Pose, Robot};
-use crate::import::urdf;
+use crate::import::robot::{Inertial, Joint, Kind, Link, Mimic, Pose, Robot};
+use crate::import::xml::parse;
+use crate::import::{additions, mjcf, sdf, urdf};
 
-/// The text of the model of a robot in URDF, and a line for each kind of element that was left out.
+/// How a robot becomes a model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ImportOptions {
+    /// Whether the root link moves freely; otherwise it is fixed.
+    pub floating: bool,
+    /// Whether joints that move no mass are fixed; otherwise they are refused.
+    pub fix_massless: bool,
+}
+
+/// The text of the model of a robot in URDF, and notes on what was left out and changed.
 ///
-/// Bodies have the names of links, and coordinates those of joints, changed if they are not valid names; the
-/// root link is fixed, or free if `floats` is set. Limits and meshes become comments.
+/// Bodies have the names of links, and coordinates those of joints, changed if they are not valid names.
+/// Limits and meshes become comments.
+///
+/// # Errors
+/// [`UrdfError`], which gives the file, line and column.
+pub fn model_of_robot(source: &Source, options: ImportOptions) -> Result<(String, Vec<String>), UrdfError> {
+    let document = parse(source)?;
+    let mut robot = match document.root_element().tag_name().name() {
+        "mujoco" => mjcf::read(source, &document)?,
+        "sdf" => sdf::read(source, &document)?,
+        _ => urdf::read(source, &document)?,
+    };
+    if let Some(world) = robot.links.first().filter(|link| link.is_world && options.floating) {
+        let message = format!("--floating has no place here: {} says which bodies move freely", robot.format);
+        let help = "leave the option out, or give the body a free joint";
+        return Err(UrdfError::at(source, world.span.clone(), "", message, help));
+    }
+    if options.fix_massless {
+        robot = massless::fixed(&robot, &Tree::of(source, &robot)?.order);
+    }
+    let tree = Tree::of(source, &robot)?;
+    massless::check(source, &robot, &tree.order)?;
+    let starts = tree.starts()?;
+    Ok((tree.text(options.floating, &starts), tree.left_out()))
+}
+
+/// [`model_of_robot`] with the root link free if `floats` is set, and without joints that move no mass.
 ///
 /// # Errors
 /// [`UrdfError`], which gives the file, line and column.
 pub fn model_of_urdf(source: &Source, floats: bool) -> Result<(String, Vec<String>), UrdfError> {
-    let robot = urdf::read(source)?;
-    let tree = Tree::of(source, &robot)?;
-    tree.check_masses()?;
-    tree.check_mimics()?;
-    Ok((tree.text(floats), tree.left_out()))
+    model_of_robot(source, ImportOptions { floating: floats, fix_massless: false })
 }
 
 /// The links of a robot in the order of a tree.
@@ -97,49 +131,27 @@ impl<'a> Tree<'a> {
                 "leave a joint of the circle out",
             ));
         }
-        let names = Names::of(&order);
+        let names = Names::of(robot, &order);
         Ok(Tree { source, robot, order, names })
     }
 
-    /// Checks that everything that moves has mass, or mimics something that has mass: a joint that mimics
-    /// another needs no mass of its own.
-    fn check_masses(&self) -> Result<(), UrdfError> {
-        let mut carries: HashSet<&str> = HashSet::new();
-        for (link, joint) in self.order.iter().rev() {
-            let has_mass = link.inertial.as_ref().is_some_and(|inertial| {
-                inertial.mass > 0.0 || inertial.inertia.iter().any(|&moment| moment != 0.0)
-            });
-            if has_mass {
-                carries.insert(&link.name);
-            }
-            let Some(joint) = joint else { continue };
-            if carries.contains(link.name.as_str()) {
-                carries.insert(&joint.parent);
-            } else if joint.kind != Kind::Fixed && joint.mimic.is_none() {
-                let message = format!(
-                    "the link `{}` can move, and neither it nor what hangs on it has mass",
-                    link.name
-                );
-                let entry = format!("<link {}>", link.name);
-                let help = "give it an <inertial>, or make its joint `fixed`";
-                return Err(UrdfError::at(self.source, link.span.clone(), entry, message, help));
-            }
-        }
-        Ok(())
-    }
-
-    /// Checks that each joint that mimics another mimics one that has exactly one coordinate, and none itself.
-    fn check_mimics(&self) -> Result<(), UrdfError> {
-        let mimics = |joint: &&Joint| joint.mimic.is_some() && joint.kind != Kind::Fixed;
-        for first in self.robot.joints.iter().filter(mimics) {
-            let mut joint = first;
+    /// The start values of joints that mimic others; all other joints start at 0.
+    fn starts(&self) -> Result<Vec<(&'a Joint, f64)>, UrdfError> {
+        let mut starts = Vec::new();
+        for first in
+            self.robot.joints.iter().filter(|joint| joint.mimic.is_some() && joint.kind != Kind::Fixed)
+        {
+            // x = m (m' (… ) + o') + o
+            let (mut factor, mut start, mut joint) = (1.0, 0.0, first);
             let mut seen: Vec<&str> = vec![&joint.name];
             while let Some(mimic) = &joint.mimic {
+                start += factor * mimic.offset;
+                factor *= mimic.multiplier;
                 let entry = format!("<joint {}>", joint.name);
                 let fault = |message: String, help: &str| {
                     UrdfError::at(self.source, joint.span.clone(), entry.clone(), message, help)
                 };
-                let followed = self.joint_named(&mimic.joint);
+                let followed = self.robot.joints.iter().find(|known| known.name == mimic.joint);
                 let followed = followed.ok_or_else(|| {
                     fault(format!("it mimics `{}`, which is not there", mimic.joint), "name another joint")
                 })?;
@@ -154,12 +166,9 @@ impl<'a> Tree<'a> {
                 seen.push(&followed.name);
                 joint = followed;
             }
+            starts.push((first, start));
         }
-        Ok(())
-    }
-
-    fn joint_named(&self, name: &str) -> Option<&'a Joint> {
-        self.robot.joints.iter().find(|known| known.name == name)
+        Ok(starts)
     }
 
     fn left_out(&self) -> Vec<String> {
@@ -176,10 +185,25 @@ impl<'a> Tree<'a> {
             let mimic = joint.mimic.as_ref()?;
             Some(format!("the joint `{}` is fixed: that it mimics `{}` is left out", joint.name, mimic.joint))
         });
-        elements.chain(dry).chain(still).collect()
+        let remarks = self.robot.joints.iter().flat_map(|joint| joint.remarks.clone());
+        let moments = self.robot.links.iter().filter_map(|link| {
+            let [a, b, c] = impossible(link.inertial.as_ref()?)?.map(rounded);
+            Some(format!(
+                "no body has the principal moments of inertia {a}, {b} and {c} of the link `{}`: one is \
+                 negative, or larger than the sum of the others",
+                link.name
+            ))
+        });
+        elements
+            .chain(self.robot.notes.clone())
+            .chain(dry)
+            .chain(still)
+            .chain(remarks)
+            .chain(moments)
+            .collect()
     }
 
-    fn text(&self, floats: bool) -> String {
+    fn text(&self, floats: bool, starts: &[(&Joint, f64)]) -> String {
         let mut text = String::new();
         let mut line = |line: String| {
             text += &line;
@@ -188,33 +212,54 @@ impl<'a> Tree<'a> {
         let file = Path::new(self.source.name())
             .file_name()
             .map_or_else(|| "-".into(), |name| name.to_string_lossy());
-        line(format!("# Made of the URDF file {} by `pc import`.", one_line(&file)));
+        line(format!("# Made of the {} file {} by `pc import`.", self.robot.format, one_line(&file)));
         self.left_out().iter().for_each(|left| line(format!("# {}.", one_line(left))));
         line("\n[model]".into());
         line(format!("name = {}", quoted(&self.robot.name)));
-        line("\n[parameters]\ng = 9.81 # URDF says nothing of gravity".into());
-        for joint in &self.robot.joints {
-            if let Some(damping) = self.names.damping(joint) {
-                line(format!("{damping} = {:?}", joint.damping));
+        let section = |title: &str, lines: Vec<String>| match lines.as_slice() {
+            [] => String::new(),
+            lines => format!("\n[{title}]\n{}\n", lines.join("\n")),
+        };
+        let (weight, gravity) = self.gravity();
+        let parameters = weight.into_iter().chain(additions::parameters(self.robot, &self.names)).collect();
+        text += &section("parameters", parameters);
+        text += &section("inputs", additions::inputs(self.robot, &self.names));
+        text += &section("gravity", vec![gravity]);
+        let mut line = |line: String| {
+            text += &line;
+            text.push('\n');
+        };
+        let coupled = additions::coupled_starts(self.robot, starts);
+        let apart: Vec<_> = coupled.iter().filter(|(_, start)| *start != 0.0).collect();
+        if !apart.is_empty() {
+            line("\n[coordinates]".into());
+            for (joint, start) in apart {
+                let x = self.names.coordinate(joint).unwrap_or_default(); // what is coupled has one
+                line(format!("{x} = {start:?}"));
             }
         }
-        line("\n[gravity]\nacceleration = [0, 0, \"-g\"]".into());
-        for (link, joint) in &self.order {
+        for (link, joint) in self.order.iter().filter(|(link, _)| !link.is_world) {
             line(self.body(link, *joint, floats));
         }
-        // Joints with one coordinate have entries for their dampings.
-        let several = self.robot.joints.iter().filter(|joint| !joint.kind.is_single());
-        let damped: Vec<(&Joint, &str)> =
-            several.filter_map(|joint| Some((joint, self.names.damping(joint)?))).collect();
-        if !damped.is_empty() {
-            line("\n[forces]".into());
-        }
-        for (joint, damping) in damped {
-            for velocity in self.names.velocities(joint) {
-                line(format!("\"{velocity}\" = \"-{damping}*{velocity}\""));
-            }
-        }
+        additions::loops(self.robot, &self.names).into_iter().for_each(&mut line);
+        text += &section("constraints", additions::constraints(self.robot, &self.names));
+        text += &section("lagrangian", additions::lagrangian(self.robot, &self.names));
+        text += &section("forces", additions::forces(self.robot, &self.names));
         text
+    }
+
+    /// A parameter for the weight, if gravity is vertical, and the line of `[gravity]`.
+    fn gravity(&self) -> (Option<String>, String) {
+        match self.robot.gravity {
+            None => {
+                let weight = format!("g = 9.81 # {} says nothing of gravity", self.robot.format);
+                (Some(weight), "acceleration = [0, 0, \"-g\"]".to_owned())
+            }
+            Some([0.0, 0.0, down]) if down < 0.0 => {
+                (Some(format!("g = {:?}", -down)), "acceleration = [0, 0, \"-g\"]".to_owned())
+            }
+            Some(acceleration) => (None, format!("acceleration = {}", list(&acceleration))),
+        }
     }
 
     /// The section of a body.
@@ -231,6 +276,10 @@ impl<'a> Tree<'a> {
         match joint {
             None => line(format!("joint = {{ kind = \"{}\" }}", if floats { "free" } else { "fixed" })),
             Some(joint) => {
+                joint.remarks.iter().for_each(|remark| line(format!("# {}", one_line(remark))));
+                if self.names.coordinate(joint).is_some_and(|x| x != joint.name) {
+                    line(format!("# the joint {}", one_line(&joint.name)));
+                }
                 if !joint.limits.is_empty() {
                     let limits: Vec<String> =
                         joint.limits.iter().map(|(key, value)| format!("{key} {value}")).collect();
@@ -240,15 +289,12 @@ impl<'a> Tree<'a> {
                 line(self.joint(joint));
             }
         }
-        if link.inertial.is_none() && joint.is_some_and(|joint| joint.mimic.is_some()) {
-            line("mass = 0.0\ninertia = [0.0, 0.0, 0.0]".to_owned());
-        }
         if let Some(inertial) = &link.inertial {
             line(format!("mass = {:?}", inertial.mass));
             if inertial.origin.xyz != [0.0; 3] {
                 line(format!("center = {}", list(&inertial.origin.xyz)));
             }
-            line(format!("inertia = {}", list(&along_axes_of_the_link(inertial))));
+            line(format!("inertia = {}", list(&moments(inertial))));
         }
         text
     }
@@ -260,10 +306,18 @@ impl<'a> Tree<'a> {
             Kind::Prismatic => "prismatic",
             Kind::Floating => "free",
             Kind::Planar => "planar",
+            Kind::Spherical => "spherical",
+            Kind::Universal => "universal",
+            Kind::Screw => "screw",
         };
         let mut text = format!("joint = {{ kind = \"{kind}\"");
-        if joint.kind.is_single() || joint.kind == Kind::Planar {
+        if joint.kind == Kind::Universal {
+            let _ = write!(text, ", axes = [{}, {}]", list(&joint.axis), list(&joint.second_axis));
+        } else if joint.kind.has_axis() {
             let _ = write!(text, ", axis = {}", list(&joint.axis));
+        }
+        if joint.kind == Kind::Screw {
+            let _ = write!(text, ", pitch = {:?}", joint.pitch);
         }
         let Pose { xyz, rpy: [roll, pitch, yaw] } = joint.origin;
         if xyz != [0.0; 3] {
@@ -275,12 +329,10 @@ impl<'a> Tree<'a> {
         if !turns.is_empty() {
             let _ = write!(text, ", turns = [{}]", turns.join(", "));
         }
-        let mimic = joint.mimic.as_ref().filter(|_| joint.kind.is_single());
-        if let Some((followed, mimic)) =
-            mimic.and_then(|mimic| Some((self.joint_named(&mimic.joint)?, mimic)))
-        {
+        if let Some(mimic) = joint.mimic.as_ref().filter(|_| joint.kind.is_single()) {
+            let followed = self.robot.joint(&mimic.joint).map_or("", |other| self.names.body(&other.child));
             // Writing to a string cannot fail.
-            let _ = write!(text, ", follows = {}", quoted(self.names.body(&followed.child)));
+            let _ = write!(text, ", follows = {}", quoted(followed));
             if mimic.multiplier != 1.0 {
                 let _ = write!(text, ", ratio = {:?}", mimic.multiplier);
             }
@@ -288,9 +340,7 @@ impl<'a> Tree<'a> {
                 let _ = write!(text, ", offset = {:?}", mimic.offset);
             }
         }
-        if let Some(damping) = self.names.damping(joint).filter(|_| joint.kind.is_single()) {
-            let _ = write!(text, ", damping = \"{damping}\"");
-        }
+        text += &additions::drive_of(joint, &self.names);
         match self.names.coordinate(joint) {
             Some(x) if x != self.names.body(&joint.child) => {
                 let _ = write!(text, ", coordinates = [\"{x}\"]");
@@ -317,35 +367,10 @@ fn angle(angle: f64) -> String {
     format!("{angle:?}")
 }
 
-fn list(numbers: &[f64]) -> String {
-    let numbers: Vec<String> = numbers
-        .iter()
-        .map(|number| if *number == 0.0 { "0".into() } else { format!("{number:?}") })
-        .collect();
-    format!("[{}]", numbers.join(", "))
-}
-
-/// The inertia matrix R I Rᵀ, where R is the rotation of the inertial's origin; only the three moments of
-/// inertia if the products of inertia vanish.
-fn along_axes_of_the_link(inertial: &Inertial) -> Vec<f64> {
-    let [xx, yy, zz, xy, yz, xz] = inertial.inertia;
-    let own = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
-    let [roll, pitch, yaw] = inertial.origin.rpy;
-    let [xx, yy, zz, xy, yz, xz] = if inertial.origin.rpy == [0.0; 3] {
-        inertial.inertia
-    } else {
-        let product = |a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]| -> [[f64; 3]; 3] {
-            std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|l| a[i][l] * b[l][j]).sum()))
-        };
-        let (a, b, c) = (roll.sin_cos(), pitch.sin_cos(), yaw.sin_cos());
-        let about_x = [[1.0, 0.0, 0.0], [0.0, a.1, -a.0], [0.0, a.0, a.1]];
-        let about_y = [[b.1, 0.0, b.0], [0.0, 1.0, 0.0], [-b.0, 0.0, b.1]];
-        let about_z = [[c.1, -c.0, 0.0], [c.0, c.1, 0.0], [0.0, 0.0, 1.0]];
-        let r = product(&about_z, &product(&about_y, &about_x));
-        let transposed = std::array::from_fn(|i| std::array::from_fn(|j| r[j][i]));
-        let turned = product(&r, &product(&own, &transposed));
-        [turned[0][0], turned[1][1], turned[2][2], turned[0][1], turned[1][2], turned[0][2]]
-    };
+/// The inertia matrix in axes of the link; only the three moments of inertia if the products of inertia
+/// vanish.
+fn moments(inertial: &Inertial) -> Vec<f64> {
+    let [xx, yy, zz, xy, yz, xz] = along_axes_of_the_link(inertial);
     match [xy, yz, xz] == [0.0; 3] {
         true => vec![xx, yy, zz],
         false => vec![xx, yy, zz, xy, yz, xz],

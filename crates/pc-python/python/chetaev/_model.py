@@ -95,7 +95,9 @@ class Model:
 
     @classmethod
     def from_urdf(cls, path: str | os.PathLike[str], *, floating: bool = False) -> Model:
-        """The model of a robot in URDF with macros expanded: links become bodies on joints.
+        """The model of a robot in URDF with macros expanded, in MJCF or in SDF.
+
+        Links become bodies on joints.
 
         Warnings name what was left out. The text of the model can be written to a file and edited
         further.
@@ -105,7 +107,7 @@ class Model:
         path : path
             The file.
         floating : bool
-            Whether the root link moves freely; otherwise it is fixed.
+            Whether the root link of a robot in URDF moves freely; otherwise it is fixed.
 
         Raises
         ------
