@@ -8,7 +8,7 @@ use quick_xml::events::{BytesDecl, Event};
 
 use crate::contents::{Contents, ParameterKind};
 use crate::experiment::Experiment;
-use crate::options::FmiVersion;
+use crate::options::{FmiVersion, FmuSolver};
 
 type Xml = Writer<Vec<u8>>;
 type Attributes = Vec<(&'static str, String)>;
@@ -38,6 +38,8 @@ struct Variable {
     depends: Option<Vec<usize>>,
     is_rate: bool,
     is_indicator: bool,
+    /// Whether importers may access it in the middle of a step.
+    is_intermediate: bool,
 }
 
 impl Variable {
@@ -53,6 +55,7 @@ impl Variable {
             depends: None,
             is_rate: false,
             is_indicator: false,
+            is_intermediate: false,
         }
     }
 
@@ -114,12 +117,13 @@ fn variables(contents: &Contents<'_>) -> Vec<Variable> {
     all.extend(contents.states.iter().enumerate().map(|(i, state)| {
         let causality = if state.is_column { "output" } else { "local" };
         let variable = Variable::new(&state.name, causality, "continuous").starting(state.number);
-        Variable { depends: Some(vec![of_states + i]), ..variable }
+        Variable { depends: Some(vec![of_states + i]), is_intermediate: true, ..variable }
     }));
     all.extend(contents.states.iter().zip(&rates).enumerate().map(|(i, (state, &rate))| {
         let variable =
             Variable::new(&format!("der({})", state.name), "local", "continuous").initial("calculated");
-        Variable { derivative: Some(of_states + i), depends: depends(rate), is_rate: true, ..variable }
+        let (derivative, depends) = (Some(of_states + i), depends(rate));
+        Variable { derivative, depends, is_rate: true, is_intermediate: true, ..variable }
     }));
     let of_parameter = if contents.is_fixed { "fixed" } else { "tunable" };
     all.extend(contents.parameters.iter().map(|parameter| {
@@ -127,12 +131,15 @@ fn variables(contents: &Contents<'_>) -> Vec<Variable> {
         match parameter.kind {
             ParameterKind::Given => of("parameter", of_parameter).starting(Some(parameter.value)),
             ParameterKind::Follows => of("calculatedParameter", of_parameter).initial("calculated"),
-            ParameterKind::Input => Variable { start: Some(parameter.value), ..of("input", "continuous") },
+            ParameterKind::Input => {
+                let variable = of("input", "continuous");
+                Variable { start: Some(parameter.value), is_intermediate: true, ..variable }
+            }
         }
     }));
     all.extend(contents.observed.iter().map(|(name, value)| {
         let variable = Variable::new(name, "output", "continuous").initial("calculated");
-        Variable { depends: depends(*value), ..variable }
+        Variable { depends: depends(*value), is_intermediate: true, ..variable }
     }));
     all.extend(contents.events.iter().map(|event| {
         let variable = Variable::new(&format!("event({})", event.name), "local", "continuous");
@@ -140,6 +147,42 @@ fn variables(contents: &Contents<'_>) -> Vec<Variable> {
         Variable { depends: depends(event.when), is_indicator: true, ..variable }
     }));
     all
+}
+
+/// What the integration of Co-Simulation is able to do.
+fn co_simulation(
+    version: FmiVersion,
+    contents: &Contents<'_>,
+    solver: FmuSolver,
+) -> Vec<(&'static str, &'static str)> {
+    let has_inputs = contents.parameters.iter().any(|parameter| parameter.kind == ParameterKind::Input);
+    let mut all = vec![("canHandleVariableCommunicationStepSize", "true")];
+    match version {
+        FmiVersion::V2 if has_inputs => all.push(("canInterpolateInputs", "true")),
+        FmiVersion::V2 => {}
+        FmiVersion::V3 => {
+            all.extend([
+                ("providesIntermediateUpdate", "true"),
+                ("canReturnEarlyAfterIntermediateUpdate", "true"),
+            ]);
+            if has_inputs {
+                all.push(("recommendedIntermediateInputSmoothness", order(solver)));
+            }
+            if contents.events.iter().any(|event| event.is_terminal) {
+                all.push(("mightReturnEarlyFromDoStep", "true"));
+            }
+        }
+    }
+    all
+}
+
+/// The order of a method, which it has under inputs that are so many times continuously differentiable.
+fn order(solver: FmuSolver) -> &'static str {
+    match solver {
+        FmuSolver::Dop853 => "8",
+        FmuSolver::Radau5 => "5",
+        FmuSolver::RungeKutta4 { .. } => "4",
+    }
 }
 
 /// The XML of an element without attributes and its contents.
@@ -221,7 +264,7 @@ pub(crate) fn model_description(
             let completed = if version == FmiVersion::V2 { &[][..] } else { &completed };
             let kinds = [
                 ("ModelExchange", abilities(completed)),
-                ("CoSimulation", abilities(&[("canHandleVariableCommunicationStepSize", "true")])),
+                ("CoSimulation", abilities(&co_simulation(version, contents, experiment.solver))),
             ];
             for (name, attributes) in kinds {
                 match version {
@@ -273,6 +316,9 @@ fn write_variable(xml: &mut Xml, version: FmiVersion, place: usize, variable: &V
         }
         FmiVersion::V3 => {
             attributes.extend(of_real);
+            if variable.is_intermediate {
+                attributes.push(("intermediateUpdate", "true".to_owned()));
+            }
             attributes.extend(variable.derivative.map(|of| ("derivative", of.to_string())));
             empty(xml, "Float64", &attributes)
         }

@@ -18,8 +18,10 @@ use crate::platform;
 use crate::token::token;
 
 /// What is the same for all models.
-const RUNTIME: [(&str, &str); 6] = [
+const RUNTIME: [(&str, &str); 8] = [
     ("instance.h", include_str!("c/instance.h")),
+    ("inputs.h", include_str!("c/inputs.h")),
+    ("state.h", include_str!("c/state.h")),
     ("events.h", include_str!("c/events.h")),
     ("variables.h", include_str!("c/variables.h")),
     ("step.h", include_str!("c/step.h")),

@@ -7,7 +7,7 @@
 //!
 //! Read `options` and `error`; `contents` with `events`, what an FMU is made of; `experiment`, how it integrates; then what is written:
 //! `layout`, a header in C, `description`, the XML, and `token`, which binds them; `platform`, the compiler; `fmu` puts them together.
-//! In `c`: `instance.h`, `events.h`, `variables.h`, then `step.h` and `advance.h`, the integration, and `fmi2.c` or `fmi3.c` with its
+//! In `c`: `instance.h`, `inputs.h`, `state.h`, `events.h`, `variables.h`, then `step.h` and `advance.h`, the integration, and `fmi2.c` or `fmi3.c` with its
 //! headers, the interface.
 //!
 //! # Around it

@@ -249,6 +249,128 @@ fn parameters_follow_and_inputs_act() {
     assert!(pushed("5") > 1.0 && pushed("-5") < -1.0);
 }
 
+/// Two inputs push a mass, one of them through a state: ẍ = a + b z, ż = b.
+const PUSHED: &str = r#"
+[inputs]
+a = 0.0
+b = 0.0
+
+[coordinates]
+x = 0.0
+
+[states.z]
+rate = "b"
+
+[lagrangian]
+kinetic = "x'^2/2"
+
+[forces]
+x = "a + b*z"
+
+[outputs]
+power = "a*x'"
+
+[simulation]
+t_end = 2.0
+"#;
+
+/// With a = b = sin t from rest, the first on its own: x = t − sin t, and the second as well: z = 1 − cos t, so that
+/// b z = sin t − sin 2t/2 and x = 2 (t − sin t) − (2t − sin 2t)/8.
+fn pushed(t: f64, both: bool) -> [f64; 2] {
+    match both {
+        false => [t - t.sin(), 1.0 - t.cos()],
+        true => [
+            2.0 * (t - t.sin()) - (2.0 * t - (2.0 * t).sin()) / 8.0,
+            2.0 * (1.0 - t.cos()) - (1.0 - (2.0 * t).cos()) / 4.0,
+        ],
+    }
+}
+
+#[test]
+fn inputs_move_between_communication_points_as_the_importer_says() {
+    let model = written(PUSHED);
+    let solvers = [
+        (FmuSolver::Dop853, 1e-9),
+        (FmuSolver::Radau5, 1e-9),
+        // h⁴ t/120, twice.
+        (FmuSolver::RungeKutta4 { step: 0.02 }, 1e-8),
+    ];
+    for (solver, within) in solvers {
+        for version in VERSIONS {
+            let fmu = export(&model, &FmuOptions::new(version, "it").solver(solver)).unwrap();
+            let importer = Importer::new(&fmu, version);
+            let [x, v, a, b, power] = ["x", "x'", "a", "b", "power"].map(|name| reference(&fmu, name));
+            let asked = ["get", &x, "get", &v, "get", &power];
+            let worst = |more: &[&str], both: bool| {
+                let lines = importer.run(&[&["cs", "2", "0.1"], more, &asked].concat()).unwrap();
+                assert_eq!(lines.len(), 21);
+                let errors = lines.iter().map(|line| {
+                    let [x, v] = pushed(line[0], both);
+                    let power = line[0].sin() * v;
+                    [(x, line[1]), (v, line[2]), (power, line[3])]
+                        .map(|(a, b)| (a - b).abs())
+                        .into_iter()
+                        .fold(0.0, f64::max)
+                });
+                errors.fold(0.0, f64::max)
+            };
+            // Held, the force comes half a step of 0.1 late: the velocity lacks 0.05 sin t.
+            let held = worst(&["sine", &a, "0"], false);
+            assert!(held > 0.04 && held < 0.2, "{solver:?} {version:?}: {held:e}");
+            let bound = |order: i32| match version {
+                // What is left of the series, (0.1)ⁿ⁺¹/(n + 1)!, at all times of a way of length 2, and what the method leaves.
+                FmiVersion::V2 => 0.2 * f64::powi(0.1, order) + within,
+                FmiVersion::V3 => within,
+            };
+            for order in [1, 2, 3, 7] {
+                let text = order.to_string();
+                let alone = worst(&["sine", &a, &text], false);
+                let both = worst(&["sine", &a, &text, "sine", &b, &text], true);
+                let most = bound(order);
+                assert!(alone < most && both < most, "{solver:?} {version:?} {order}: {alone:e} {both:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_step_returns_early_where_the_importer_asks_for_that() {
+    let model = written(PUSHED);
+    let options = FmuOptions::new(FmiVersion::V3, "it").solver(FmuSolver::RungeKutta4 { step: 0.02 });
+    let fmu = export(&model, &options).unwrap();
+    let importer = Importer::new(&fmu, FmiVersion::V3);
+    let [x, a] = ["x", "a"].map(|name| reference(&fmu, name));
+    // The importer of the test sees to it that the step from 0.2 ends at this time.
+    let lines = importer.run(&["cs", "2", "0.1", "sine", &a, "1", "early", "0.2345", "get", &x]).unwrap();
+    for line in lines {
+        assert!((line[1] - pushed(line[0], false)[0]).abs() < 1e-8, "{line:?}");
+    }
+}
+
+#[test]
+fn derivatives_are_of_inputs_and_their_orders_few() {
+    let fmu = exported(&written(PUSHED), FmiVersion::V2);
+    let importer = Importer::new(&fmu, FmiVersion::V2);
+    let complaint = importer.run(&["cs", "1", "1", "sine", &reference(&fmu, "a"), "9"]).unwrap_err();
+    let expected = "the derivative of order 9 of the input a: orders are 1 to 8";
+    assert!(complaint.contains(expected), "{complaint}");
+    let abilities = [
+        (FmiVersion::V2, "canInterpolateInputs=\"true\""),
+        (
+            FmiVersion::V3,
+            "providesIntermediateUpdate=\"true\" canReturnEarlyAfterIntermediateUpdate=\"true\" \
+                          recommendedIntermediateInputSmoothness=\"8\"",
+        ),
+    ];
+    for (version, ability) in abilities {
+        let fmu = exported(&written(PUSHED), version);
+        assert!(fmu.model_description().contains(ability), "{}", fmu.model_description());
+    }
+    // Without inputs there is nothing to interpolate.
+    let alone = exported(&model("heavy-top-lagrange"), FmiVersion::V2);
+    assert!(!alone.model_description().contains("canInterpolateInputs"));
+}
+
 #[test]
 fn co_simulation_stays_on_constraints_and_refuses_a_start_off_them() {
     let pendulum = written(

@@ -2,7 +2,7 @@
 #ifndef PC_EVENTS_H
 #define PC_EVENTS_H
 
-#include "instance.h"
+#include "state.h"
 
 #if FMU_EVENTS > 0
 
@@ -51,7 +51,7 @@ static void short_step(Instance *instance, double h, double *z)
     for (int stage = 0; stage < 4; stage++) {
         for (int i = 0; i < FMU_STATES; i++)
             z[i] = m->y[i] + (stage > 0 ? part[stage]*h*k[stage - 1][i] : 0.0);
-        fmu_rhs(m->t + part[stage]*h, z, m->p, k[stage]);
+        rates_at(instance, m->t + part[stage]*h, z, k[stage]);
     }
     for (int i = 0; i < FMU_STATES; i++)
         z[i] = m->y[i] + h/6.0*(k[0][i] + 2.0*k[1][i] + 2.0*k[2][i] + k[3][i]);
@@ -63,7 +63,7 @@ static void leave(Instance *instance, double length)
     static const double early[4] = {1e-12, 1e-9, 1e-6, 1e-3};
     Motion *m = &instance->motion;
     double z[FMU_STATES + 1], start[FMU_EVENTS], values[FMU_EVENTS];
-    fmu_events(m->t, m->y, m->p, start);
+    events_at(instance, m->t, m->y, start);
     for (int i = 0; i < FMU_EVENTS; i++)
         if (m->side[i] == 0)
             m->noise[i] = fmax(m->noise[i], DBL_MIN);
@@ -75,7 +75,7 @@ static void leave(Instance *instance, double length)
             return;
         const double h = fmax(early[n]*length, 4.0*DBL_EPSILON*fabs(m->t));
         short_step(instance, h, z);
-        fmu_events(m->t + h, z, m->p, values);
+        events_at(instance, m->t + h, z, values);
         for (int i = 0; i < FMU_EVENTS; i++)
             if (m->side[i] == 0 && fabs(values[i]) > m->noise[i])
                 m->side[i] = values[i] > 0.0 ? 1 : -1;
@@ -158,6 +158,7 @@ static int occur(Instance *instance, const int *due, const double *noise, const 
     Motion *m = &instance->motion;
     double values[FMU_EVENTS];
     int reset = 0;
+    inputs_at(instance, m->t);
     for (int i = 0; i < FMU_EVENTS; i++) {
         if (!due[i])
             continue;

@@ -15,9 +15,23 @@ enum {
     OF_NOTHING = OF_INDICATORS + FMU_EVENTS
 };
 
+/* Whether a variable is computed and continuous. */
+static int is_continuous(unsigned reference)
+{
+    return (reference >= OF_STATES && reference < OF_PARAMETERS) || (reference >= OF_OBSERVED && reference < OF_INDICATORS);
+}
+
+static int is_input(unsigned reference)
+{
+    return reference >= OF_PARAMETERS && reference < OF_OBSERVED
+           && parameter_kinds[reference - OF_PARAMETERS] == FMU_INPUT;
+}
+
 static int get_variable(Instance *instance, unsigned reference, double *value)
 {
     Motion *m = &instance->motion;
+    if (instance->called == MAY_SET)
+        return wrong(instance, "no variable has a value yet at this time: inputs are asked for");
     if (reference == OF_TIME)
         *value = m->t;
     else if (reference < OF_RATES)
@@ -44,8 +58,24 @@ static int get_variable(Instance *instance, unsigned reference, double *value)
     return 1;
 }
 
+/* Sets an input in the middle of a step. */
+static int provide(Instance *instance, unsigned reference, double value)
+{
+    if (instance->called != MAY_SET)
+        return wrong(instance, "no variable can be set at the end of a step of the integration");
+    if (!is_input(reference) || !instance->provided[reference - OF_PARAMETERS])
+        return wrong(instance, "the variable of value reference %u is no input that was named as an intermediate variable",
+                     reference);
+    if (!isfinite(value))
+        return wrong(instance, "the input %s is set to %g", parameter_names[reference - OF_PARAMETERS], value);
+    instance->motion.p[reference - OF_PARAMETERS] = value;
+    return 1;
+}
+
 static int set_variable(Instance *instance, unsigned reference, double value)
 {
+    if (instance->called != UNCALLED)
+        return provide(instance, reference, value);
     Motion *m = &instance->motion;
     const int begins = m->phase == INSTANTIATED || m->phase == INITIALIZING;
     if (!isfinite(value))
@@ -85,7 +115,7 @@ static int directional(Instance *instance, const unsigned *unknowns, size_t m_un
         const unsigned known = knowns[n];
         if (known >= OF_STATES && known < OF_RATES)
             of_states[known - OF_STATES] += seed[n];
-        else if (known >= OF_PARAMETERS && known < OF_OBSERVED && parameter_kinds[known - OF_PARAMETERS] == FMU_INPUT)
+        else if (is_input(known))
             of_parameters[known - OF_PARAMETERS] += seed[n];
         else
             return wrong(instance, "derivatives are taken by states and inputs, not by value reference %u", known);

@@ -1,6 +1,11 @@
 /* An importer of an FMU, for tests. It is told what to do by its arguments:
  *
  *     importer cs|me END STEP [set REFERENCE VALUE]... [get REFERENCE]... [derivative UNKNOWN KNOWN]...
+ *              [sine REFERENCE ORDER]... [early TIME]
+ *
+ * An input that is a sine has in Co-Simulation the value sin t at each communication point. With an ORDER above 0 it is sin t
+ * between them too: up to its derivative of that order in FMI 2, by intermediate update in FMI 3. There the step over TIME
+ * returns early, and the next one goes on from there.
  *
  * It writes what is asked for at the start and after each communication step, a line each. In Model Exchange it makes steps of
  * the classical Runge-Kutta method, a hundred between two lines, and bisects them at events. */
@@ -53,6 +58,61 @@ static void told(void *environment, fmi3Status status, const char *category, con
 }
 #endif
 
+/* The inputs that are sines, those that are so between communication points too, and when to return early. */
+enum { MOST = 8 };
+static unsigned sines[MOST], smooth[MOST];
+static int orders[MOST];
+static size_t sine_count, smooth_count;
+static double early = INFINITY;
+
+/* The derivative of sin t of an order. */
+static double sine(double t, int order)
+{
+    return order % 4 == 0 ? sin(t) : order % 4 == 1 ? cos(t) : order % 4 == 2 ? -sin(t) : -cos(t);
+}
+
+static void put_sines(void *c, double t)
+{
+    for (size_t n = 0; n < sine_count; n++) {
+        const double value = sin(t);
+        need(SET(c, sines[n], value), "sine");
+#if VERSION == 2
+        for (int order = 1; order <= orders[n]; order++) {
+            const double slope = sine(t, order);
+            need(fmi2SetRealInputDerivatives(c, &sines[n], 1, &order, &slope), "slope");
+        }
+#endif
+    }
+}
+
+#if VERSION == 3
+static void *instance;
+static double finished = -INFINITY;
+static int tried;
+
+/* Sets sines where they are asked for, and looks at the first of them at the end of each step of the integration. */
+static void update(void *environment, double t, bool set, bool get, bool done, bool can_return, bool *wanted, double *when)
+{
+    (void)environment;
+    double value = sin(t), found = value;
+    if (t < finished || set == get || get != done)
+        exit(3);
+    for (size_t n = 0; n < smooth_count && set; n++)
+        need(SET(instance, smooth[n], value), "sine");
+    if (get && smooth_count > 0)
+        need(GET(instance, smooth[0], found), "sine at the end of a step");
+    if (set && !tried && fmi3GetFloat64(instance, smooth, 1, &found, 1) == fmi3OK)
+        exit(4); /* there is no value yet */
+    tried |= set;
+    if (get && found != value)
+        exit(5);
+    if (done)
+        finished = t;
+    *wanted = done && can_return && t < early;
+    *when = early;
+}
+#endif
+
 static void *make(int exchange)
 {
 #if VERSION == 2
@@ -61,7 +121,8 @@ static void *make(int exchange)
 #else
     if (exchange)
         return fmi3InstantiateModelExchange("it", FMU_TOKEN, NULL, false, true, NULL, told);
-    return fmi3InstantiateCoSimulation("it", FMU_TOKEN, NULL, false, true, false, false, NULL, 0, NULL, told, NULL);
+    return fmi3InstantiateCoSimulation("it", FMU_TOKEN, NULL, false, true, false, isfinite(early), smooth, smooth_count, NULL,
+                                       told, smooth_count > 0 || isfinite(early) ? update : NULL);
 #endif
 }
 
@@ -174,10 +235,16 @@ static int simulate(void *c, double t, double length)
         need(status, "step");
     return ends;
 #else
-    bool needed, ends, early;
-    double last;
-    need(fmi3DoStep(c, t, length, true, &needed, &ends, &early, &last), "step");
-    return ends;
+    const double to = t + length;
+    bool needed, ends, is_early;
+    for (double last = t;;) {
+        need(fmi3DoStep(c, last, to - last, true, &needed, &ends, &is_early, &last), "step");
+        if (ends || !is_early)
+            return ends;
+        if (last != early)
+            exit(6);
+        early = INFINITY;
+    }
 #endif
 }
 
@@ -211,7 +278,21 @@ int main(int count, char **arguments)
     const int exchange = !strcmp(arguments[1], "me");
     const double end = strtod(arguments[2], NULL), step = strtod(arguments[3], NULL);
     double y[N];
+    for (int n = 4; n + 2 < count; n++)
+        if (!strcmp(arguments[n], "sine")) {
+            sines[sine_count] = (unsigned)strtoul(arguments[n + 1], NULL, 10);
+            orders[sine_count] = (int)strtol(arguments[n + 2], NULL, 10);
+            if (VERSION == 3 && orders[sine_count] > 0)
+                smooth[smooth_count++] = sines[sine_count];
+            sine_count++;
+        }
+    for (int n = 4; n + 1 < count; n++)
+        if (!strcmp(arguments[n], "early"))
+            early = strtod(arguments[n + 1], NULL);
     void *c = make(exchange);
+#if VERSION == 3
+    instance = c;
+#endif
     if (!c)
         return 1;
     for (int n = 4; n + 2 < count; n++)
@@ -226,9 +307,13 @@ int main(int count, char **arguments)
     const int steps = (int)floor((end - FMU_T_START)/step + 0.5);
     for (int n = 0; n < steps && !ends; n++) {
         const double t = FMU_T_START + n*step, to = FMU_T_START + (n + 1)*step;
+        if (!exchange)
+            put_sines(c, t);
         ends = exchange ? exchange_to(c, t, to, y) : simulate(c, t, to - t);
         write(c, count, arguments);
     }
+    if (early < end)
+        exit(7);
     CALL(Terminate)(c);
     CALL(FreeInstance)(c);
     return 0;
