@@ -168,8 +168,8 @@ fn co_simulation(
             if has_inputs {
                 all.push(("recommendedIntermediateInputSmoothness", order(solver)));
             }
-            if contents.events.iter().any(|event| event.is_terminal) {
-                all.push(("mightReturnEarlyFromDoStep", "true"));
+            if !contents.events.is_empty() {
+                all.extend([("mightReturnEarlyFromDoStep", "true"), ("hasEventMode", "true")]);
             }
         }
     }

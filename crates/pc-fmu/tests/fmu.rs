@@ -147,14 +147,56 @@ fn a_terminal_event_ends_a_simulation() {
     for version in VERSIONS {
         let fmu = exported(&falls, version);
         let importer = Importer::new(&fmu, version);
-        for kind in KINDS {
-            let lines = importer.run(&[kind, "3", "0.75", "get", &reference(&fmu, "z")]).unwrap();
+        let event_mode = ["events", "1"];
+        let ways = [("me", [].as_slice()), ("cs", &[]), ("cs", &event_mode)];
+        for (kind, more) in ways.into_iter().take(if version == FmiVersion::V3 { 3 } else { 2 }) {
+            let asked = [kind, "3", "0.75", "get", &reference(&fmu, "z")];
+            let lines = importer.run(&[&asked, more].concat()).unwrap();
             let last = lines.last().unwrap();
             // z = 2 − t²/2
             assert!((last[0] - 2.0).abs() < 1e-12 && last[1].abs() < 1e-12, "{kind} {lines:?}");
             assert_eq!(lines.len(), 4);
         }
     }
+}
+
+#[test]
+fn events_of_co_simulation_are_left_to_importers_with_event_mode() {
+    let fmu = exported(&model("bouncing-ball"), FmiVersion::V3);
+    let abilities = "mightReturnEarlyFromDoStep=\"true\" hasEventMode=\"true\"";
+    assert!(fmu.model_description().contains(abilities), "{}", fmu.model_description());
+    let importer = Importer::new(&fmu, FmiVersion::V3);
+    let [y, v] = ["y", "y'"].map(|name| reference(&fmu, name));
+    let run = |events| importer.run(&["cs", "2", "0.5", "events", events, "get", &y, "get", &v]).unwrap();
+    // The same motion, to the last bit.
+    let inside = run("0");
+    assert_eq!(run("1"), inside);
+    let mut lines = run("2");
+    lines.retain(|line| !inside.contains(line));
+    // Three bounces: where and how fast before them and after them.
+    let (t0, speed) = ((2.0_f64 / 9.81).sqrt(), (2.0 * 9.81_f64).sqrt());
+    assert_eq!(lines.len(), 6);
+    for (n, pair) in lines.chunks(2).enumerate() {
+        let flights: f64 = (1..=n as i32).map(|flight| 2.0 * t0 * 0.8f64.powi(flight)).sum();
+        let before = -speed * 0.8f64.powi(n as i32);
+        for (line, velocity) in pair.iter().zip([before, -0.8 * before]) {
+            // To rounding, of times near 1, amplified by speeds near 5.
+            assert!((line[0] - t0 - flights).abs() < 1e-12, "{line:?}");
+            assert!(line[1].abs() < 1e-12 && (line[2] - velocity).abs() < 1e-11, "{line:?}");
+        }
+    }
+    let complaint = importer.run(&["cs", "5", "0.5", "events", "1"]).unwrap_err();
+    assert!(complaint.contains("the event bounce accumulates at t = 4.063"), "{complaint}");
+    assert!(complaint.contains("an event has occurred at t = 0.45152"), "{complaint}");
+}
+
+#[test]
+fn a_model_without_events_has_no_event_mode() {
+    let fmu = exported(&written(PUSHED), FmiVersion::V3);
+    assert!(!fmu.model_description().contains("hasEventMode"));
+    let importer = Importer::new(&fmu, FmiVersion::V3);
+    let complaint = importer.run(&["cs", "1", "0.5", "events", "1"]).unwrap_err();
+    assert!(complaint.contains("there is no event mode: the model has no events"), "{complaint}");
 }
 
 /// A cart with a pendulum, pushed by the input F.

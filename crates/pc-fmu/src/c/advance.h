@@ -138,6 +138,10 @@ static Found locate(Instance *instance, Sample *a, Sample *b)
     moved(m);
     if (!evaluate(instance))
         return FAILED;
+    if (instance->leaves_events) {
+        leave_event(m, due, noise, beyond, length);
+        return OCCURRED;
+    }
     return occur(instance, due, noise, beyond, length) ? OCCURRED : FAILED;
 }
 
@@ -197,12 +201,13 @@ static void finish_step(Instance *instance, double *to)
     *to = fmax(*to, instance->motion.t);
 }
 
-/* Goes to time `to`, or to a terminal event before it, or less far where the importer asks for that; 0 where that fails. */
+/* Goes to time `to`, or to a terminal event before it, or to one that is left to the importer, or less far where the importer
+   asks for that; 0 where that fails. */
 static int advance(Instance *instance, double to)
 {
     Motion *m = &instance->motion;
     double end[FMU_STATES + 1];
-    while (m->t < to && !m->terminal) {
+    while (m->t < to && !m->terminal && !m->waiting) {
         if (!evaluate(instance))
             return 0;
         const double left = to - m->t;
@@ -262,6 +267,8 @@ static int do_step(Instance *instance, double t, double length)
     Motion *m = &instance->motion;
     if (m->terminal)
         return wrong(instance, "a terminal event has ended the simulation at t = %.17g", m->t);
+    if (m->waiting)
+        return wrong(instance, "an event has occurred at t = %.17g: it is dealt with in event mode", m->t);
     if (!(length >= 0.0) || !isfinite(t + length))
         return wrong(instance, "a step of length %g", length);
     if (fabs(t - m->t) > 1e-9*fmax(fmax(fabs(t), fabs(m->t)), length))

@@ -220,10 +220,34 @@ static void rounding(Motion *m, const double *values, double *sums)
     }
 }
 
-/* At an event that an importer has found: what is due, if anything. Whether states were reset is left in `changed`. */
+/* Leaves an event to the importer. */
+static void leave_event(Motion *m, const int *due, const double *noise, const int *beyond, double length)
+{
+    m->waiting = 1;
+    m->due_length = length;
+    memcpy(m->due, due, FMU_EVENTS*sizeof *due);
+    memcpy(m->beyond, beyond, FMU_EVENTS*sizeof *beyond);
+    memcpy(m->due_noise, noise, FMU_EVENTS*sizeof *noise);
+}
+
+/* Deals with the event that was left. */
+static int take_event(Instance *instance, int *changed)
+{
+    Motion *m = &instance->motion;
+    *changed = 0;
+    for (int i = 0; i < FMU_EVENTS; i++)
+        *changed |= m->due[i] && event_resets[i];
+    m->waiting = 0;
+    return occur(instance, m->due, m->due_noise, m->beyond, m->due_length);
+}
+
+/* At an event that an importer has found, or that was left to it: what is due, if anything. Whether states were reset is left in
+   `changed`. */
 static int discrete_update(Instance *instance, int *changed)
 {
     Motion *m = &instance->motion;
+    if (m->waiting)
+        return take_event(instance, changed);
     double values[FMU_EVENTS], noise[FMU_EVENTS];
     int due[FMU_EVENTS], beyond[FMU_EVENTS], any = 0;
     fmu_events(m->t, m->y, m->p, values);

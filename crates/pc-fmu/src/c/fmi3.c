@@ -115,6 +115,11 @@ static int set_intermediate(Component *component, const fmi3ValueReference of[],
     return 1;
 }
 
+static int may_use_event_mode(Instance *instance, int event_mode)
+{
+    return !event_mode || FMU_EVENTS > 0 || wrong(instance, "there is no event mode: the model has no events");
+}
+
 EXPORT fmi3Instance FMI(fmi3InstantiateModelExchange)(fmi3String name, fmi3String token, fmi3String resources,
                                                       fmi3Boolean visible, fmi3Boolean logging,
                                                       fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger)
@@ -134,12 +139,14 @@ EXPORT fmi3Instance FMI(fmi3InstantiateCoSimulation)(fmi3String name, fmi3String
     (void)resources;
     (void)visible;
     (void)logging;
-    (void)event_mode;
     Component *component = instantiate(name, token, environment, logger);
     if (!component)
         return NULL;
     component->early_return = early_return;
-    if (!set_intermediate(component, intermediate, intermediate_count, update)) {
+    /* Where a step has to go to its end, its events occur on the way. */
+    component->instance.leaves_events = event_mode && early_return;
+    if (!may_use_event_mode(&component->instance, event_mode)
+        || !set_intermediate(component, intermediate, intermediate_count, update)) {
         free(component);
         return NULL;
     }
@@ -398,7 +405,7 @@ EXPORT fmi3Status FMI(fmi3DoStep)(fmi3Instance c, fmi3Float64 t, fmi3Float64 len
     Instance *instance = c;
     const Component *component = c;
     const int right = do_step(instance, t, length);
-    *event = false;
+    *event = instance->motion.waiting;
     *terminate = instance->motion.terminal;
     *last = instance->motion.t;
     *early = right && component->early_return && *last < t + length;

@@ -38,6 +38,10 @@ typedef struct {
     double times[FMU_EVENTS + 1][LAST_TIMES], longest[FMU_EVENTS + 1];
     int occurrences[FMU_EVENTS + 1];
     int terminal; /* whether a terminal event has occurred */
+    /* An event that was found, and is left to the importer: whether there is one, which events are due, and what `occur` needs
+       to know of them. */
+    int waiting, due[FMU_EVENTS + 1], beyond[FMU_EVENTS + 1];
+    double due_noise[FMU_EVENTS + 1], due_length;
     double level[FMU_KEPT + 1];
     int guard[FMU_GUARDS + 1];
     /* The derivatives of inputs at the start of the coming step, up to this order; 0 where the inputs are held. */
@@ -58,6 +62,7 @@ typedef struct Instance {
     void (*ask)(struct Instance *instance, double t);
     void (*tell)(struct Instance *instance, double *to);
     Called called;
+    int leaves_events; /* whether events are left to the importer, who deals with them in event mode */
     int provided[FMU_PARAMETERS + 1];
     /* Whether inputs move now, the time to which those among the parameters belong, where the way began and ends, and the
        inputs there. */

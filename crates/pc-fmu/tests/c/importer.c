@@ -1,11 +1,12 @@
 /* An importer of an FMU, for tests. It is told what to do by its arguments:
  *
  *     importer cs|me END STEP [set REFERENCE VALUE]... [get REFERENCE]... [derivative UNKNOWN KNOWN]...
- *              [sine REFERENCE ORDER]... [early TIME]
+ *              [sine REFERENCE ORDER]... [early TIME] [events 0|1|2]
  *
  * An input that is a sine has in Co-Simulation the value sin t at each communication point. With an ORDER above 0 it is sin t
  * between them too: up to its derivative of that order in FMI 2, by intermediate update in FMI 3. There the step over TIME
- * returns early, and the next one goes on from there.
+ * returns early, and the next one goes on from there. With `events 1` it deals with events in event mode, with `events 2` it
+ * writes a line before and one after each of them too.
  *
  * It writes what is asked for at the start and after each communication step, a line each. In Model Exchange it makes steps of
  * the classical Runge-Kutta method, a hundred between two lines, and bisects them at events. */
@@ -64,6 +65,10 @@ static unsigned sines[MOST], smooth[MOST];
 static int orders[MOST];
 static size_t sine_count, smooth_count;
 static double early = INFINITY;
+static int events;
+static void write(void *c, int count, char **arguments);
+static int argument_count;
+static char **all_arguments;
 
 /* The derivative of sin t of an order. */
 static double sine(double t, int order)
@@ -121,7 +126,7 @@ static void *make(int exchange)
 #else
     if (exchange)
         return fmi3InstantiateModelExchange("it", FMU_TOKEN, NULL, false, true, NULL, told);
-    return fmi3InstantiateCoSimulation("it", FMU_TOKEN, NULL, false, true, false, isfinite(early), smooth, smooth_count, NULL,
+    return fmi3InstantiateCoSimulation("it", FMU_TOKEN, NULL, false, true, events > 0, events > 0 || isfinite(early), smooth, smooth_count, NULL,
                                        told, smooth_count > 0 || isfinite(early) ? update : NULL);
 #endif
 }
@@ -223,6 +228,27 @@ static int exchange_to(void *c, double t, double to, double *y)
     return 0;
 }
 
+#if VERSION == 3
+/* Event mode of Co-Simulation; whether the simulation ends. */
+static int happen(void *c)
+{
+    bool again, ends, nominals, values, with_next, needed, is_early;
+    double next, last;
+    if (fmi3DoStep(c, FMU_T_START, 1.0, true, &needed, &ends, &is_early, &last) == fmi3OK)
+        exit(9); /* before the event was dealt with */
+    if (events > 1)
+        write(c, argument_count, all_arguments);
+    need(fmi3EnterEventMode(c), "event mode");
+    do
+        need(fmi3UpdateDiscreteStates(c, &again, &ends, &nominals, &values, &with_next, &next), "event");
+    while (again);
+    if (events > 1)
+        write(c, argument_count, all_arguments);
+    need(fmi3EnterStepMode(c), "step mode");
+    return ends;
+}
+#endif
+
 /* Co-Simulation; whether the simulation ends. */
 static int simulate(void *c, double t, double length)
 {
@@ -239,11 +265,16 @@ static int simulate(void *c, double t, double length)
     bool needed, ends, is_early;
     for (double last = t;;) {
         need(fmi3DoStep(c, last, to - last, true, &needed, &ends, &is_early, &last), "step");
+        if (is_early != (last < to) && (events || isfinite(early)))
+            exit(8);
+        if (needed && happen(c))
+            return 1;
         if (ends || !is_early)
             return ends;
-        if (last != early)
+        if (!needed && last != early)
             exit(6);
-        early = INFINITY;
+        if (!needed)
+            early = INFINITY;
     }
 #endif
 }
@@ -289,6 +320,10 @@ int main(int count, char **arguments)
     for (int n = 4; n + 1 < count; n++)
         if (!strcmp(arguments[n], "early"))
             early = strtod(arguments[n + 1], NULL);
+        else if (!strcmp(arguments[n], "events"))
+            events = atoi(arguments[n + 1]);
+    argument_count = count;
+    all_arguments = arguments;
     void *c = make(exchange);
 #if VERSION == 3
     instance = c;
@@ -303,6 +338,10 @@ int main(int count, char **arguments)
         }
     initialize(c, end);
     int ends = exchange && event(c, y);
+#if VERSION == 3
+    if (events)
+        need(fmi3EnterStepMode(c), "step mode");
+#endif
     write(c, count, arguments);
     const int steps = (int)floor((end - FMU_T_START)/step + 0.5);
     for (int n = 0; n < steps && !ends; n++) {
