@@ -113,6 +113,10 @@ def check_models(program, place):
             for kind, within in (("ModelExchange", exchange), ("CoSimulation", tolerance)):
                 names, found = simulate(fmu, kind, columns, within)
                 compare(f"{model}, FMI {version}, {kind}", columns, names, found)
+            if version == 3 and fmpy.read_model_description(str(fmu)).coSimulation.hasEventMode:
+                more = {"use_event_mode": True, "early_return_allowed": True}
+                names, found = simulate(fmu, "CoSimulation", columns, tolerance, **more)
+                compare(f"{model}, FMI {version}, CoSimulation, event mode", columns, names, found)
 
 
 def controller(x, angle, v, rate):

@@ -238,9 +238,9 @@ fn derivatives_along_directions_are_those_of_difference_quotients() {
         let fmu = exported(&cart, version);
         let importer = Importer::new(&fmu, version);
         // Where the motion is after 0.3, by both sides of each known.
-        for known in ["x'", "θ", "θ'", "F"] {
+        for known in ["x'", "θ", "θ'", "F", "M", "l", "g"] {
             let set = reference(&fmu, known);
-            for unknown in ["der(x)", "der(x')", "der(θ')", "tip", "push", "jerk", "x"] {
+            for unknown in ["der(x)", "der(x')", "der(θ')", "tip", "push", "jerk", "x", "J"] {
                 let of = reference(&fmu, unknown);
                 let start: f64 = variable(&fmu, known, "start").unwrap().parse().unwrap();
                 let at = |value: f64| {
@@ -269,6 +269,155 @@ fn derivatives_along_directions_are_those_of_difference_quotients() {
                 );
             }
         }
+    }
+}
+
+/// A weight that is pushed, also as 3 sin t, from where its parameters put it; one of them follows another.
+const MOVED: &str = r#"
+[parameters]
+k = 4.0
+c = 0.5
+w = "k^2"
+
+[inputs]
+a = 0.0
+b = 0.0
+
+[coordinates]
+x = "c*w"
+
+[quasi_velocities]
+"x'" = 2.0
+
+[lagrangian]
+kinetic = "x'^2/2"
+
+[forces]
+x = "a*c + b*sign(x) - k*x' + 3*sin(t)"
+
+[outputs]
+twice = "2*x + w"
+pull = "d(x')"
+
+[simulation]
+t_end = 1.0
+"#;
+
+#[test]
+fn derivatives_before_the_start_follow_it() {
+    for version in VERSIONS {
+        let fmu = exported(&written(MOVED), version);
+        let importer = Importer::new(&fmu, version);
+        let slope = |when: &[&str], unknown: &str, known: &str| {
+            let (unknown, known) = (reference(&fmu, unknown), reference(&fmu, known));
+            let asked = ["cs", "1", "0.25", "derivative", &unknown, &known];
+            importer
+                .run(&[&asked, when].concat())
+                .unwrap()
+                .iter()
+                .map(|line| [line[0], line[1]])
+                .collect::<Vec<_>>()
+        };
+        // x = c w and w = k² at k = 4, c = 0.5; once the motion has begun x is on its own.
+        let expected =
+            [("w", "k", 8.0, 8.0), ("x", "k", 4.0, 0.0), ("x", "c", 16.0, 0.0), ("twice", "k", 16.0, 8.0)];
+        for (unknown, known, before, later) in expected {
+            assert_eq!(slope(&["initial"], unknown, known)[0][1], before, "∂{unknown}/∂{known}");
+            assert_eq!(slope(&[], unknown, known)[0][1], later, "∂{unknown}/∂{known}");
+        }
+        for unknown in ["der(x')", "pull"] {
+            for [t, by_time] in slope(&[], unknown, "t") {
+                assert!((by_time - 3.0 * t.cos()).abs() < 1e-15, "{t} {by_time}");
+            }
+        }
+        let complaint = importer
+            .run(&["cs", "1", "1", "derivative", &reference(&fmu, "x"), &reference(&fmu, "w")])
+            .unwrap_err();
+        let expected = "derivatives are taken by time, states, parameters and inputs, not by value reference";
+        assert!(complaint.contains(expected), "{complaint}");
+    }
+}
+
+/// What a variable depends on by a list of the structure, and how.
+fn depends(fmu: &Fmu, version: FmiVersion, list: &str, name: &str) -> String {
+    let document = roxmltree::Document::parse(fmu.model_description()).unwrap();
+    let names: Vec<&str> = document
+        .descendants()
+        .filter(|node| matches!(node.tag_name().name(), "ScalarVariable" | "Float64"))
+        .map(|node| node.attribute("name").unwrap())
+        .collect();
+    let (tag, place, first) = match version {
+        FmiVersion::V2 => ("Unknown", "index", 1),
+        FmiVersion::V3 => (list, "valueReference", 0),
+    };
+    let of = |place: &str| names[place.parse::<usize>().unwrap() - first];
+    let unknown = document
+        .descendants()
+        .filter(|node| node.has_tag_name(tag))
+        .filter(|node| version == FmiVersion::V3 || node.parent().unwrap().has_tag_name(list))
+        .find(|node| of(node.attribute(place).unwrap()) == name)
+        .unwrap_or_else(|| panic!("no {name} in {list}"));
+    let words = |name| unknown.attribute(name).unwrap_or_default().split_whitespace();
+    let pairs = words("dependencies").zip(words("dependenciesKind"));
+    pairs.map(|(on, kind)| format!("{} {kind}", of(on))).collect::<Vec<_>>().join(", ")
+}
+
+#[test]
+fn dependencies_are_those_of_the_expressions() {
+    let model = written(MOVED);
+    let [fmi2, fmi3] = VERSIONS.map(|version| exported(&model, version));
+    // No factor describes how a jump enters; parameters are known in FMI 3 only.
+    let (outputs, rates) = (("Outputs", "Output"), ("Derivatives", "ContinuousStateDerivative"));
+    let rows = [
+        (outputs, "x", "x constant", "", ""),
+        (outputs, "twice", "x constant", ", k dependent", ""),
+        (rates, "der(x)", "x' constant", "", ""),
+        (
+            rates,
+            "der(x')",
+            "t dependent, x dependent, x' tunable",
+            ", k dependent, c dependent",
+            ", a tunable, b dependent",
+        ),
+    ];
+    for ((of2, of3), name, known, parameters, inputs) in rows {
+        assert_eq!(depends(&fmi2, FmiVersion::V2, of2, name), format!("{known}{inputs}"), "{name}");
+        assert_eq!(
+            depends(&fmi3, FmiVersion::V3, of3, name),
+            format!("{known}{parameters}{inputs}"),
+            "{name}"
+        );
+    }
+    let at_start = [
+        ("x", "k dependent, c dependent"),
+        ("w", "k dependent"),
+        ("twice", "k dependent, c dependent"),
+        ("der(x)", "x' constant"),
+    ];
+    for (name, known) in at_start {
+        assert_eq!(depends(&fmi2, FmiVersion::V2, "InitialUnknowns", name), known, "{name}");
+        assert_eq!(depends(&fmi3, FmiVersion::V3, "InitialUnknown", name), known, "{name}");
+    }
+}
+
+#[test]
+fn units_are_those_of_time_and_of_angles_of_joints() {
+    let arm = written(
+        "[bodies.upper]\njoint = { kind = \"revolute\", axis = [0, 1, 0] }\nmass = 1.0\ncenter = [0, 0, -0.5]\n\
+         [bodies.slide]\nparent = \"upper\"\njoint = { kind = \"prismatic\", axis = [0, 0, 1] }\nmass = 1.0\n\
+         [simulation]\nt_end = 1.0\n",
+    );
+    for version in VERSIONS {
+        let fmu = exported(&arm, version);
+        let unit = |name: &str| variable(&fmu, name, "unit");
+        let units = ["t", "upper", "upper'", "der(upper)", "der(upper')"].map(unit);
+        assert_eq!(units.map(Option::unwrap), ["s", "rad", "rad/s", "rad/s", "rad/s2"]);
+        assert_eq!(unit("slide"), None);
+        let text = fmu.model_description();
+        assert!(
+            text.contains("<Unit name=\"rad/s2\">") && text.contains("<BaseUnit rad=\"1\" s=\"-2\"/>"),
+            "{text}"
+        );
     }
 }
 

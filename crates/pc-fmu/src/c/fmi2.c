@@ -1,6 +1,7 @@
 /* The functions of FMI 2.0, for Model Exchange and Co-Simulation [Modelica Association, Functional Mock-up Interface for
    Model Exchange and Co-Simulation, version 2.0.4 (2022)]. */
 #include "advance.h"
+#include "derivatives.h"
 
 #if defined _WIN32
 #define EXPORT __declspec(dllexport)

@@ -1,6 +1,7 @@
 /* The functions of FMI 3.0, for Model Exchange and Co-Simulation [Modelica Association, Functional Mock-up Interface
    Specification, version 3.0.1 (2023)]. */
 #include "advance.h"
+#include "derivatives.h"
 
 #include "fmi3_types.h"
 
@@ -296,6 +297,16 @@ EXPORT fmi3Status FMI(fmi3GetDirectionalDerivative)(fmi3Instance c, const fmi3Va
     if (seed_count != known_count || sensitivity_count != unknown_count)
         return refuse(c, "array");
     return status(directional(c, unknowns, unknown_count, knowns, known_count, seed, sensitivity));
+}
+
+EXPORT fmi3Status FMI(fmi3GetAdjointDerivative)(fmi3Instance c, const fmi3ValueReference unknowns[],
+                                                size_t unknown_count, const fmi3ValueReference knowns[],
+                                                size_t known_count, const fmi3Float64 seed[], size_t seed_count,
+                                                fmi3Float64 sensitivity[], size_t sensitivity_count)
+{
+    if (seed_count != unknown_count || sensitivity_count != known_count)
+        return refuse(c, "array");
+    return status(adjoint(c, unknowns, unknown_count, knowns, known_count, seed, sensitivity));
 }
 
 EXPORT fmi3Status FMI(fmi3EvaluateDiscreteStates)(fmi3Instance c)

@@ -1,12 +1,12 @@
 /* An importer of an FMU, for tests. It is told what to do by its arguments:
  *
  *     importer cs|me END STEP [set REFERENCE VALUE]... [get REFERENCE]... [derivative UNKNOWN KNOWN]...
- *              [sine REFERENCE ORDER]... [early TIME] [events 0|1|2]
+ *              [sine REFERENCE ORDER]... [early TIME] [events 0|1|2] [initial]
  *
  * An input that is a sine has in Co-Simulation the value sin t at each communication point. With an ORDER above 0 it is sin t
  * between them too: up to its derivative of that order in FMI 2, by intermediate update in FMI 3. There the step over TIME
  * returns early, and the next one goes on from there. With `events 1` it deals with events in event mode, with `events 2` it
- * writes a line before and one after each of them too.
+ * writes a line before and one after each of them too. With `initial` the first line is written in initialization mode.
  *
  * It writes what is asked for at the start and after each communication step, a line each. In Model Exchange it makes steps of
  * the classical Runge-Kutta method, a hundred between two lines, and bisects them at events. */
@@ -131,7 +131,7 @@ static void *make(int exchange)
 #endif
 }
 
-static void initialize(void *c, double end)
+static void initialize(void *c, double end, int is_initial)
 {
 #if VERSION == 2
     need(fmi2SetupExperiment(c, 0, 0.0, FMU_T_START, 1, end), "setup");
@@ -139,6 +139,8 @@ static void initialize(void *c, double end)
 #else
     need(fmi3EnterInitializationMode(c, false, 0.0, FMU_T_START, true, end), "enter");
 #endif
+    if (is_initial)
+        write(c, argument_count, all_arguments);
     need(CALL(ExitInitializationMode)(c), "initialization");
 }
 
@@ -296,7 +298,13 @@ static void write(void *c, int count, char **arguments)
 #if VERSION == 2
             need(fmi2GetDirectionalDerivative(c, &first, 1, &known, 1, &seed, &value), "derivative");
 #else
+            const unsigned twice[2] = {first, first};
+            const double seeds[2] = {2.0, 3.0};
+            double adjoint;
             need(fmi3GetDirectionalDerivative(c, &first, 1, &known, 1, &seed, 1, &value, 1), "derivative");
+            need(fmi3GetAdjointDerivative(c, twice, 2, &known, 1, seeds, 2, &adjoint, 1), "adjoint derivative");
+            if (fabs(adjoint - 5.0*value) > 4.0*DBL_EPSILON*fabs(adjoint))
+                exit(10);
 #endif
             printf(" %.17g", value);
         }
@@ -322,6 +330,9 @@ int main(int count, char **arguments)
             early = strtod(arguments[n + 1], NULL);
         else if (!strcmp(arguments[n], "events"))
             events = atoi(arguments[n + 1]);
+    int is_initial = 0;
+    for (int n = 4; n < count; n++)
+        is_initial |= !strcmp(arguments[n], "initial");
     argument_count = count;
     all_arguments = arguments;
     void *c = make(exchange);
@@ -336,13 +347,14 @@ int main(int count, char **arguments)
             const double value = strtod(arguments[n + 2], NULL);
             need(SET(c, reference, value), "set");
         }
-    initialize(c, end);
+    initialize(c, end, is_initial);
     int ends = exchange && event(c, y);
 #if VERSION == 3
     if (events)
         need(fmi3EnterStepMode(c), "step mode");
 #endif
-    write(c, count, arguments);
+    if (!is_initial)
+        write(c, count, arguments);
     const int steps = (int)floor((end - FMU_T_START)/step + 0.5);
     for (int n = 0; n < steps && !ends; n++) {
         const double t = FMU_T_START + n*step, to = FMU_T_START + (n + 1)*step;
