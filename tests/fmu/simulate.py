@@ -116,6 +116,8 @@ def check_models(program, place):
             if version == 3 and fmpy.read_model_description(str(fmu)).coSimulation.hasEventMode:
                 more = {"use_event_mode": True, "early_return_allowed": True}
                 names, found = simulate(fmu, "CoSimulation", columns, tolerance, **more)
+                # There are rows at events too.
+                found = found[[np.argmin(np.abs(found["time"] - t)) for t in columns["t"]]]
                 compare(f"{model}, FMI {version}, CoSimulation, event mode", columns, names, found)
 
 
@@ -199,7 +201,7 @@ def check_controller(program, place, model):
 
 
 # The torques on the arm and their derivatives: those of order n are multiplied by the n-th power of the frequency.
-TORQUES = {"shoulder": (3.0, 1.0, 0.0), "elbow": (2.0, 2.0, 0.5)}
+TORQUES = {"shoulder": (1.0, 1.0, 0.0), "elbow": (0.5, 2.0, 0.5)}
 
 
 def torque(name, t, order=0):
@@ -260,7 +262,7 @@ def check_inputs(program, place, model):
     written = place / "driven.toml"
     written.write_text(text, encoding="utf-8")
     columns = table(program, written, place, TOLERANCE)
-    # The series of a torque over a tenth of a second leaves 2⁴·2·0.1⁴/4! = 1e-4 at most.
+    # The series of a torque over a tenth of a second leaves 2⁴·0.5·0.1⁴/4! = 3e-5 at most.
     for version, within in ((2, 1e-3), (3, AGREEMENT)):
         fmu = place / f"arm-{version}.fmu"
         pc(program, "emit", model, "--fmu", version, "-o", fmu)
