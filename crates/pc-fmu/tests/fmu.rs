@@ -525,6 +525,45 @@ fn inputs_move_between_communication_points_as_the_importer_says() {
 }
 
 #[test]
+fn a_saved_state_has_the_derivatives_of_inputs_and_the_event_that_waits() {
+    for version in VERSIONS {
+        let fmu = exported(&written(PUSHED), version);
+        let importer = Importer::new(&fmu, version);
+        let [x, a] = ["x", "a"].map(|name| reference(&fmu, name));
+        let run = |more: &[&str]| {
+            importer.run(&[&["cs", "2", "0.1", "sine", &a, "3", "get", &x], more].concat()).unwrap()
+        };
+        assert_eq!(run(&["again"]), run(&[]), "{version:?}");
+    }
+    let fmu = exported(&model("bouncing-ball"), FmiVersion::V3);
+    let importer = Importer::new(&fmu, FmiVersion::V3);
+    let run = |more: &[&str]| {
+        importer.run(&[&["cs", "2", "0.5", "get", &reference(&fmu, "y")], more].concat()).unwrap()
+    };
+    assert_eq!(run(&["events", "1", "again"]), run(&[]));
+}
+
+#[test]
+fn a_jump_of_an_input_in_event_mode_passes_events_at_once() {
+    let kicked = written(
+        "[inputs]\na = -1.0\n[coordinates]\nx = 0.0\n[quasi_velocities]\n\"x'\" = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\n\
+         [events.kick]\nwhen = \"a - x/2\"\ndirection = \"rising\"\nreset = { \"x'\" = \"2*x'\" }\n[simulation]\nt_end = 2.0\n",
+    );
+    let fmu = exported(&kicked, FmiVersion::V3);
+    let importer = Importer::new(&fmu, FmiVersion::V3);
+    let [x, v, a] = ["x", "x'", "a"].map(|name| reference(&fmu, name));
+    let asked = ["cs", "2", "1", "jump", &a, "3", "1", "get", &x, "get", &v];
+    let rows = |more: &[&str]| importer.run(&[&asked, more].concat()).unwrap();
+    // Twice as fast from t = 1 on: known at once in event mode, within the next step otherwise.
+    let expected = [[0.0, 0.0, 1.0], [1.0, 1.0, 1.0], [1.0, 1.0, 2.0], [2.0, 3.0, 2.0]];
+    for (found, expected) in rows(&["events", "1"]).iter().zip(expected) {
+        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?} {expected:?}");
+    }
+    let without = rows(&[]);
+    assert!(without.len() == 3 && (without[2][1] - 3.0).abs() < 1e-12, "{without:?}");
+}
+
+#[test]
 fn a_step_returns_early_where_the_importer_asks_for_that() {
     let model = written(PUSHED);
     let options = FmuOptions::new(FmiVersion::V3, "it").solver(FmuSolver::RungeKutta4 { step: 0.02 });

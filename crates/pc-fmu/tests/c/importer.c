@@ -2,11 +2,14 @@
  *
  *     importer cs|me END STEP [set REFERENCE VALUE]... [get REFERENCE]... [derivative UNKNOWN KNOWN]...
  *              [sine REFERENCE ORDER]... [early TIME] [events 0|1|2] [initial]
+ *              [jump REFERENCE VALUE TIME] [again]
  *
  * An input that is a sine has in Co-Simulation the value sin t at each communication point. With an ORDER above 0 it is sin t
  * between them too: up to its derivative of that order in FMI 2, by intermediate update in FMI 3. There the step over TIME
  * returns early, and the next one goes on from there. With `events 1` it deals with events in event mode, with `events 2` it
  * writes a line before and one after each of them too. With `initial` the first line is written in initialization mode.
+ * An input jumps at the communication point TIME, in event mode where that is used. With `again` each step of Co-Simulation is
+ * made twice, from the state that was saved before it, and each event is dealt with after its state was saved and set again.
  *
  * It writes what is asked for at the start and after each communication step, a line each. In Model Exchange it makes steps of
  * the classical Runge-Kutta method, a hundred between two lines, and bisects them at events. */
@@ -65,7 +68,7 @@ static unsigned sines[MOST], smooth[MOST];
 static int orders[MOST];
 static size_t sine_count, smooth_count;
 static double early = INFINITY;
-static int events;
+static int events, again;
 static void write(void *c, int count, char **arguments);
 static int argument_count;
 static char **all_arguments;
@@ -126,8 +129,8 @@ static void *make(int exchange)
 #else
     if (exchange)
         return fmi3InstantiateModelExchange("it", FMU_TOKEN, NULL, false, true, NULL, told);
-    return fmi3InstantiateCoSimulation("it", FMU_TOKEN, NULL, false, true, events > 0, events > 0 || isfinite(early), smooth, smooth_count, NULL,
-                                       told, smooth_count > 0 || isfinite(early) ? update : NULL);
+    return fmi3InstantiateCoSimulation("it", FMU_TOKEN, NULL, false, true, events > 0, events > 0 || isfinite(early), smooth,
+                                       smooth_count, NULL, told, smooth_count > 0 || isfinite(early) ? update : NULL);
 #endif
 }
 
@@ -152,9 +155,9 @@ static int event(void *c, double *y)
     need(fmi2NewDiscreteStates(c, &info), "event");
     const int end = info.terminateSimulation;
 #else
-    bool again, end, nominals, values, with_next;
+    bool more, end, nominals, values, with_next;
     double next;
-    need(fmi3UpdateDiscreteStates(c, &again, &end, &nominals, &values, &with_next, &next), "event");
+    need(fmi3UpdateDiscreteStates(c, &more, &end, &nominals, &values, &with_next, &next), "event");
 #endif
     need(CALL(EnterContinuousTimeMode)(c), "continuous time");
     need(CALL(GetContinuousStates)(c, y, N), "states");
@@ -230,20 +233,81 @@ static int exchange_to(void *c, double t, double to, double *y)
     return 0;
 }
 
+/* The state of an instance, as bytes and back; the bytes of the last one are kept. */
+static void *save(void *c)
+{
+    void *state = NULL;
+    static char *bytes;
+    size_t size;
+#if VERSION == 2
+    need(fmi2GetFMUstate(c, &state), "state");
+    need(fmi2SerializedFMUstateSize(c, state, &size), "size");
+    bytes = realloc(bytes, size);
+    need(fmi2SerializeFMUstate(c, state, bytes, size), "bytes");
+    need(fmi2FreeFMUstate(c, &state), "free");
+    need(fmi2DeSerializeFMUstate(c, bytes, size, &state), "state of bytes");
+#else
+    need(fmi3GetFMUState(c, &state), "state");
+    need(fmi3SerializedFMUStateSize(c, state, &size), "size");
+    bytes = realloc(bytes, size);
+    need(fmi3SerializeFMUState(c, state, (fmi3Byte *)bytes, size), "bytes");
+    need(fmi3FreeFMUState(c, &state), "free");
+    need(fmi3DeserializeFMUState(c, (fmi3Byte *)bytes, size, &state), "state of bytes");
+#endif
+    return state;
+}
+
+static void set(void *c, void *state)
+{
+#if VERSION == 2
+    need(fmi2SetFMUstate(c, state), "set state");
+    need(fmi2FreeFMUstate(c, &state), "free");
+#else
+    need(fmi3SetFMUState(c, state), "set state");
+    need(fmi3FreeFMUState(c, &state), "free");
+    finished = -INFINITY;
+#endif
+}
+
+/* An input jumps. */
+static void jump(void *c, double t)
+{
+    for (int n = 4; n + 3 < argument_count; n++)
+        if (!strcmp(all_arguments[n], "jump") && fabs(strtod(all_arguments[n + 3], NULL) - t) < 1e-9) {
+            const unsigned reference = (unsigned)strtoul(all_arguments[n + 1], NULL, 10);
+            const double value = strtod(all_arguments[n + 2], NULL);
+#if VERSION == 3
+            if (events) {
+                bool more, ends, nominals, values, with_next;
+                double next;
+                need(fmi3EnterEventMode(c), "event mode");
+                need(SET(c, reference, value), "jump");
+                need(fmi3UpdateDiscreteStates(c, &more, &ends, &nominals, &values, &with_next, &next), "event");
+                write(c, argument_count, all_arguments);
+                need(fmi3EnterStepMode(c), "step mode");
+                continue;
+            }
+#endif
+            need(SET(c, reference, value), "jump");
+        }
+}
+
 #if VERSION == 3
 /* Event mode of Co-Simulation; whether the simulation ends. */
 static int happen(void *c)
 {
-    bool again, ends, nominals, values, with_next, needed, is_early;
+    bool more, ends, nominals, values, with_next, needed, is_early;
     double next, last;
     if (fmi3DoStep(c, FMU_T_START, 1.0, true, &needed, &ends, &is_early, &last) == fmi3OK)
         exit(9); /* before the event was dealt with */
+    if (again)
+        set(c, save(c));
     if (events > 1)
         write(c, argument_count, all_arguments);
     need(fmi3EnterEventMode(c), "event mode");
     do
-        need(fmi3UpdateDiscreteStates(c, &again, &ends, &nominals, &values, &with_next, &next), "event");
-    while (again);
+        need(fmi3UpdateDiscreteStates(c, &more, &ends, &nominals, &values, &with_next, &next), "event");
+    while (more);
     if (events > 1)
         write(c, argument_count, all_arguments);
     need(fmi3EnterStepMode(c), "step mode");
@@ -333,6 +397,8 @@ int main(int count, char **arguments)
     int is_initial = 0;
     for (int n = 4; n < count; n++)
         is_initial |= !strcmp(arguments[n], "initial");
+    for (int n = 4; n < count; n++)
+        again |= !strcmp(arguments[n], "again");
     argument_count = count;
     all_arguments = arguments;
     void *c = make(exchange);
@@ -358,8 +424,15 @@ int main(int count, char **arguments)
     const int steps = (int)floor((end - FMU_T_START)/step + 0.5);
     for (int n = 0; n < steps && !ends; n++) {
         const double t = FMU_T_START + n*step, to = FMU_T_START + (n + 1)*step;
-        if (!exchange)
+        if (!exchange) {
+            jump(c, t);
             put_sines(c, t);
+        }
+        if (again && !exchange) {
+            void *state = save(c);
+            simulate(c, t, to - t);
+            set(c, state);
+        }
         ends = exchange ? exchange_to(c, t, to, y) : simulate(c, t, to - t);
         write(c, count, arguments);
     }
