@@ -113,6 +113,12 @@ def check_models(program, place):
             for kind, within in (("ModelExchange", exchange), ("CoSimulation", tolerance)):
                 names, found = simulate(fmu, kind, columns, within)
                 compare(f"{model}, FMI {version}, {kind}", columns, names, found)
+            if version == 3 and fmpy.read_model_description(str(fmu)).coSimulation.hasEventMode:
+                more = {"use_event_mode": True, "early_return_allowed": True}
+                names, found = simulate(fmu, "CoSimulation", columns, tolerance, **more)
+                # There are rows at events too.
+                found = found[[np.argmin(np.abs(found["time"] - t)) for t in columns["t"]]]
+                compare(f"{model}, FMI {version}, CoSimulation, event mode", columns, names, found)
 
 
 def controller(x, angle, v, rate):
@@ -194,6 +200,81 @@ def check_controller(program, place, model):
             compare(f"cart-pole, FMI {version}, {kind}, controlled", columns, list(found), found)
 
 
+# The torques on the arm and their derivatives: those of order n are multiplied by the n-th power of the frequency.
+TORQUES = {"shoulder": (1.0, 1.0, 0.0), "elbow": (0.5, 2.0, 0.5)}
+
+
+def torque(name, t, order=0):
+    """The derivative of a torque of this order, that of a sin(w t + p) being a wⁿ sin(w t + p + n π/2)."""
+    size, frequency, phase = TORQUES[name]
+    return size * frequency**order * np.sin(frequency * t + phase + order * np.pi / 2)
+
+
+def driven(file, version, end, steps, smooth):
+    """Outputs of Co-Simulation with torques that are set at communication points, and where they are smooth between them too:
+    by three derivatives in FMI 2, by intermediate update in FMI 3."""
+    description = fmpy.read_model_description(str(file))
+    references = {variable.name: variable.valueReference for variable in description.modelVariables}
+    names = [v.name for v in description.modelVariables if v.causality == "output"]
+    inputs = [references[name] for name in TORQUES]
+    folder = fmpy.extract(str(file), str(file.with_suffix("")))
+
+    def update(_environment, t, set_requested, *_rest):
+        if set_requested:
+            fmu.setFloat64(inputs, [torque(name, t) for name in TORQUES])
+
+    more = {"intermediate_update": update, "required_intermediate_variables": inputs} if version == 3 and smooth else {}
+    fmu = fmpy.instantiate_fmu(folder, description, "CoSimulation", early_return_allowed=version == 3, **more)
+    put = fmu.setReal if version == 2 else fmu.setFloat64
+    get = fmu.getReal if version == 2 else fmu.getFloat64
+    times = {"tolerance": TOLERANCE, "startTime": 0.0, "stopTime": end}
+    if version == 2:
+        fmu.setupExperiment(**times)
+        fmu.enterInitializationMode()
+    else:
+        fmu.enterInitializationMode(**times)
+    put(inputs, [torque(name, 0.0) for name in TORQUES])
+    fmu.exitInitializationMode()
+    rows = [get([references[name] for name in names])]
+    for n in range(steps):
+        t = n * end / steps
+        put(inputs, [torque(name, t) for name in TORQUES])
+        if version == 2 and smooth:
+            for order in (1, 2, 3):
+                fmu.setRealInputDerivatives(inputs, [order] * 2, [torque(name, t, order) for name in TORQUES])
+        fmu.doStep(currentCommunicationPoint=t, communicationStepSize=end / steps)
+        rows.append(get([references[name] for name in names]))
+    fmu.terminate()
+    fmu.freeInstance()
+    return dict(zip(names, np.array(rows).T, strict=True))
+
+
+def difference(columns, found):
+    """The largest difference of all that does not depend on inputs directly."""
+    return max(np.max(np.abs(found[name] - columns[name])) for name in columns if name not in ("t", "power"))
+
+
+def check_inputs(program, place, model):
+    """Torques that are sines, against a run of the model in which they are formulas."""
+    text, end, steps = model.read_text(encoding="utf-8"), 4.0, 40
+    for name, (size, frequency, phase) in TORQUES.items():
+        text = text.replace(f"{name} = 0.0\n", "").replace(name, f"({size}*sin({frequency}*t + {phase}))")
+    written = place / "driven.toml"
+    written.write_text(text, encoding="utf-8")
+    columns = table(program, written, place, TOLERANCE)
+    # The series of a torque over a tenth of a second leaves 2⁴·0.5·0.1⁴/4! = 3e-5 at most.
+    for version, within in ((2, 1e-3), (3, AGREEMENT)):
+        fmu = place / f"arm-{version}.fmu"
+        pc(program, "emit", model, "--fmu", version, "-o", fmu)
+        valid(fmu)
+        held = difference(columns, driven(fmu, version, end, steps, smooth=False))
+        smooth = difference(columns, driven(fmu, version, end, steps, smooth=True))
+        how = "three derivatives" if version == 2 else "intermediate update"
+        print(f"  arm, FMI {version}: inputs held differ by {held:.1e}, with {how} by {smooth:.1e}", flush=True)
+        if not smooth <= within < 0.02 < held:
+            raise Disagreement(f"an arm with smooth inputs differs by {smooth:.3e}, with inputs that are held by {held:.3e}")
+
+
 def main():
     """All of it."""
     program, place = sys.argv[1], Path(sys.argv[2])
@@ -201,6 +282,7 @@ def main():
     try:
         check_models(program, place)
         check_controller(program, place, here / "cart-pole.toml")
+        check_inputs(program, place, here / "arm.toml")
     except Disagreement as wrong:
         sys.exit(f"fmu: {wrong}")
 

@@ -7,6 +7,9 @@ use pc_model::{Assembly, FreeForm, Model, Variables};
 use crate::error::FmuError;
 use crate::events::{FmuEvent, events};
 
+/// The value reference of the first state, after that of time.
+pub(crate) const OF_STATES: usize = 1;
+
 /// A component of the state.
 pub(crate) struct State<'g> {
     pub(crate) name: String,
@@ -42,9 +45,18 @@ pub(crate) struct Kept<'g> {
     pub(crate) is_constraint: bool,
 }
 
+/// The derivative of something by a parameter, by their places.
+pub(crate) struct Slope<'g> {
+    pub(crate) of: usize,
+    pub(crate) by: usize,
+    pub(crate) value: Expr<'g>,
+}
+
 /// All of it.
 pub(crate) struct Contents<'g> {
     pub(crate) equations: Equations<'g>,
+    /// Their symbols and what they are.
+    pub(crate) accelerations: Vec<(Expr<'g>, Expr<'g>)>,
     pub(crate) time: Expr<'g>,
     pub(crate) symbols: Vec<Expr<'g>>,
     pub(crate) states: Vec<State<'g>>,
@@ -132,7 +144,9 @@ impl<'g> Contents<'g> {
                 "The motion of the model goes back in time, an FMU forward: it has no stop time.".to_owned(),
             );
         }
+        let accelerations = system.accelerations().into_iter().zip(equations.accelerations()).collect();
         Ok(Contents {
+            accelerations,
             is_fixed,
             has_derivatives,
             events: events(assembly, &form, &known)?,
@@ -147,6 +161,47 @@ impl<'g> Contents<'g> {
             notes,
             equations,
         })
+    }
+
+    /// The value reference of the first parameter, after states and rates.
+    pub(crate) fn of_parameters(&self) -> usize {
+        OF_STATES + 2 * self.states.len()
+    }
+
+    /// The rates of the states, with accelerations that are solved.
+    pub(crate) fn rates(&self) -> Vec<Expr<'g>> {
+        let velocities = self.equations.velocities().iter().copied();
+        let of_states = self.equations.system().states().iter().map(|&(_, rate)| rate);
+        let accelerations = self.accelerations.iter().map(|&(_, value)| value);
+        velocities.chain(accelerations).chain(of_states).collect()
+    }
+
+    /// The derivatives of parameters that follow others.
+    pub(crate) fn calculated_slopes(&self) -> Vec<Slope<'g>> {
+        self.slopes(self.calculated.iter().copied())
+    }
+
+    /// The derivatives of the start by parameters.
+    pub(crate) fn start_slopes(&self) -> Vec<Slope<'g>> {
+        self.slopes(self.states.iter().map(|state| state.start).enumerate())
+    }
+
+    fn slopes(&self, values: impl Iterator<Item = (usize, Expr<'g>)>) -> Vec<Slope<'g>> {
+        let graph = self.equations.system().graph();
+        let symbols: Vec<Expr<'g>> = self.parameters.iter().map(|parameter| parameter.symbol).collect();
+        let (places, values): (Vec<usize>, Vec<Expr<'g>>) = values.unzip();
+        let rows = places.into_iter().zip(graph.jacobian(&values, &symbols));
+        rows.flat_map(|(of, row)| row.into_iter().map(move |(by, value)| Slope { of, by, value })).collect()
+    }
+
+    /// The derivatives of the rates, then of what is observed, by time alone; none if all of them are zero.
+    pub(crate) fn time_slopes(&self) -> Vec<Expr<'g>> {
+        let system = self.equations.system();
+        let mut values = self.rates();
+        values.extend(self.observed.iter().map(|&(_, value)| value));
+        let values = system.graph().substitute(&values, &self.accelerations);
+        let slopes = system.graph().directional(&values, &[(self.time, Expr::ONE)]);
+        if slopes.iter().all(|slope| slope.is_zero()) { Vec::new() } else { slopes }
     }
 
     /// The functions beside those of the equations.
@@ -193,6 +248,24 @@ impl<'g> Contents<'g> {
             guards.collect(),
         );
         if self.has_derivatives {
+            let slopes =
+                |slopes: &[Slope<'g>]| slopes.iter().map(|slope| named(String::new(), slope.value)).collect();
+            add(
+                "calculated_slopes",
+                "the derivatives of parameters that follow others by these, but zeros",
+                slopes(&self.calculated_slopes()),
+            );
+            add(
+                "start_slopes",
+                "the derivatives of the start by parameters, but zeros",
+                slopes(&self.start_slopes()),
+            );
+            let by_time = self.time_slopes().into_iter().map(|value| named(String::new(), value));
+            add(
+                "time_slopes",
+                "the derivatives of the rates, then of what is observed, by time",
+                by_time.collect(),
+            );
             functions.push(SourceFunction::directional(
                 "directional",
                 "the derivatives of the rates, then of what is observed, along a direction that follows `p`",

@@ -3,15 +3,13 @@
 use std::io;
 
 use pc_expr::Expr;
-use quick_xml::Writer;
-use quick_xml::events::{BytesDecl, Event};
 
-use crate::contents::{Contents, ParameterKind};
+use crate::contents::{Contents, OF_STATES, ParameterKind};
+use crate::dependencies::{Dependency, Knowns};
 use crate::experiment::Experiment;
-use crate::options::FmiVersion;
-
-type Xml = Writer<Vec<u8>>;
-type Attributes = Vec<(&'static str, String)>;
+use crate::options::{FmiVersion, FmuSolver};
+use crate::units::{self, Unit, Units};
+use crate::xml::{Attributes, Xml, document, empty, inside, number, text};
 
 /// What is written about a whole.
 pub(crate) struct Title<'a> {
@@ -25,7 +23,7 @@ pub(crate) struct Title<'a> {
 }
 
 /// A variable, its place among all being its value reference.
-struct Variable {
+pub(crate) struct Variable {
     name: String,
     causality: &'static str,
     variability: &'static str,
@@ -34,10 +32,15 @@ struct Variable {
     /// The value reference of what it is the rate of.
     derivative: Option<usize>,
     description: String,
-    /// The value references of the states, inputs and time that it depends on, of what is computed.
-    depends: Option<Vec<usize>>,
+    unit: Option<Unit>,
+    /// What it depends on, if it is computed.
+    depends: Vec<Dependency>,
+    /// The same before the motion begins.
+    depends_at_start: Vec<Dependency>,
     is_rate: bool,
     is_indicator: bool,
+    /// Whether importers may access it in the middle of a step.
+    is_intermediate: bool,
 }
 
 impl Variable {
@@ -50,9 +53,12 @@ impl Variable {
             start: None,
             derivative: None,
             description: String::new(),
-            depends: None,
+            unit: None,
+            depends: Vec::new(),
+            depends_at_start: Vec::new(),
             is_rate: false,
             is_indicator: false,
+            is_intermediate: false,
         }
     }
 
@@ -71,103 +77,91 @@ impl Variable {
     }
 }
 
-/// Text of an attribute, without characters that XML has not.
-fn text(text: &str) -> String {
-    text.chars()
-        .map(|c| if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') { ' ' } else { c })
-        .collect()
-}
-
-fn number(value: f64) -> String {
-    format!("{value:?}")
-}
-
 /// All variables in the order of their value references: time, states, rates, parameters, what is observed, indicators.
-fn variables(contents: &Contents<'_>) -> Vec<Variable> {
-    let n = contents.states.len();
-    let (of_states, of_parameters) = (1, 1 + 2 * n);
-    let system = contents.equations.system();
-    let graph = system.graph();
-    let accelerations = system.accelerations();
-    let solved = contents.equations.accelerations();
-    let inputs: Vec<(Expr<'_>, usize)> = (contents.symbols.iter().enumerate())
-        .map(|(i, &symbol)| (symbol, of_states + i))
-        .chain([(contents.time, 0)])
-        .chain((contents.parameters.iter().enumerate()).filter_map(|(i, parameter)| {
-            (parameter.kind == ParameterKind::Input).then_some((parameter.symbol, of_parameters + i))
-        }))
-        .collect();
-    let known: Vec<_> = accelerations.into_iter().zip(solved.iter().copied()).collect();
-    let depends = |value: Expr<'_>| {
-        let value = graph.substitute(&[value], &known);
-        let symbols = graph.symbols_of(&value);
-        let mut places: Vec<usize> =
-            inputs.iter().filter(|(symbol, _)| symbols.contains(symbol)).map(|&(_, place)| place).collect();
-        places.sort_unstable();
-        Some(places)
+pub(crate) fn variables<'g>(contents: &Contents<'g>, units: &Units, version: FmiVersion) -> Vec<Variable> {
+    let (in_motion, at_start) = (Knowns::in_motion(contents, version), Knowns::at_start(contents));
+    let computed = |variable: Variable, value: Expr<'g>| {
+        let (depends, depends_at_start) = (in_motion.of(contents, value), at_start.of(contents, value));
+        Variable { depends, depends_at_start, is_intermediate: true, ..variable }
     };
-    let of_states_rates = system.states().iter().map(|&(_, rate)| rate);
-    let rates: Vec<Expr<'_>> =
-        contents.equations.velocities().iter().copied().chain(solved).chain(of_states_rates).collect();
-
     let mut all = vec![Variable::new("t", "independent", "continuous").described("time")];
-    all.extend(contents.states.iter().enumerate().map(|(i, state)| {
+    all[0].unit = Some(Unit::TIME);
+    all.extend(contents.states.iter().zip(&contents.symbols).map(|(state, &symbol)| {
         let causality = if state.is_column { "output" } else { "local" };
         let variable = Variable::new(&state.name, causality, "continuous").starting(state.number);
-        Variable { depends: Some(vec![of_states + i]), ..variable }
+        computed(Variable { unit: units.of(&state.name), ..variable }, symbol)
     }));
-    all.extend(contents.states.iter().zip(&rates).enumerate().map(|(i, (state, &rate))| {
+    all.extend(contents.states.iter().zip(contents.rates()).enumerate().map(|(i, (state, rate))| {
         let variable =
             Variable::new(&format!("der({})", state.name), "local", "continuous").initial("calculated");
-        Variable { derivative: Some(of_states + i), depends: depends(rate), is_rate: true, ..variable }
+        let (derivative, unit) = (Some(OF_STATES + i), units.of(&state.name).map(Unit::rate));
+        computed(Variable { derivative, unit, is_rate: true, ..variable }, rate)
     }));
     let of_parameter = if contents.is_fixed { "fixed" } else { "tunable" };
     all.extend(contents.parameters.iter().map(|parameter| {
         let of = |causality, variability| Variable::new(&parameter.name, causality, variability);
         match parameter.kind {
             ParameterKind::Given => of("parameter", of_parameter).starting(Some(parameter.value)),
-            ParameterKind::Follows => of("calculatedParameter", of_parameter).initial("calculated"),
-            ParameterKind::Input => Variable { start: Some(parameter.value), ..of("input", "continuous") },
+            ParameterKind::Follows => {
+                let variable = of("calculatedParameter", of_parameter).initial("calculated");
+                Variable { depends_at_start: at_start.of(contents, parameter.symbol), ..variable }
+            }
+            ParameterKind::Input => {
+                let variable = of("input", "continuous");
+                Variable { start: Some(parameter.value), is_intermediate: true, ..variable }
+            }
         }
     }));
     all.extend(contents.observed.iter().map(|(name, value)| {
         let variable = Variable::new(name, "output", "continuous").initial("calculated");
-        Variable { depends: depends(*value), ..variable }
+        computed(Variable { unit: units.of(name), ..variable }, *value)
     }));
-    all.extend(contents.events.iter().map(|event| {
-        let variable = Variable::new(&format!("event({})", event.name), "local", "continuous");
-        let variable = variable.initial("calculated").described("vanishes at the event");
-        Variable { depends: depends(event.when), is_indicator: true, ..variable }
-    }));
+    if version == FmiVersion::V3 {
+        // In FMI 2 they are a number only.
+        all.extend(contents.events.iter().map(|event| {
+            let variable = Variable::new(&format!("event({})", event.name), "local", "continuous");
+            let variable = variable.initial("calculated").described("vanishes at the event");
+            let depends = in_motion.of(contents, event.when);
+            Variable { depends, is_indicator: true, ..variable }
+        }));
+    }
     all
 }
 
-/// The XML of an element without attributes and its contents.
-fn inside(
-    xml: &mut Xml,
-    name: &str,
-    attributes: &Attributes,
-    write: impl FnOnce(&mut Xml) -> io::Result<()>,
-) -> io::Result<()> {
-    let pairs = attributes.iter().map(|(name, value)| (*name, value.as_str()));
-    xml.create_element(name).with_attributes(pairs).write_inner_content(write)?;
-    Ok(())
+/// What the integration of Co-Simulation is able to do.
+fn co_simulation(
+    version: FmiVersion,
+    contents: &Contents<'_>,
+    solver: FmuSolver,
+) -> Vec<(&'static str, &'static str)> {
+    let has_inputs = contents.parameters.iter().any(|parameter| parameter.kind == ParameterKind::Input);
+    let mut all = vec![("canHandleVariableCommunicationStepSize", "true")];
+    match version {
+        FmiVersion::V2 if has_inputs => all.push(("canInterpolateInputs", "true")),
+        FmiVersion::V2 => {}
+        FmiVersion::V3 => {
+            all.extend([
+                ("providesIntermediateUpdate", "true"),
+                ("canReturnEarlyAfterIntermediateUpdate", "true"),
+            ]);
+            if has_inputs {
+                all.push(("recommendedIntermediateInputSmoothness", order(solver)));
+            }
+            if !contents.events.is_empty() {
+                all.extend([("mightReturnEarlyFromDoStep", "true"), ("hasEventMode", "true")]);
+            }
+        }
+    }
+    all
 }
 
-fn empty(xml: &mut Xml, name: &str, attributes: &Attributes) -> io::Result<()> {
-    let pairs = attributes.iter().map(|(name, value)| (*name, value.as_str()));
-    xml.create_element(name).with_attributes(pairs).write_empty()?;
-    Ok(())
-}
-
-/// A document with one element.
-pub(crate) fn document(write: impl FnOnce(&mut Xml) -> io::Result<()>) -> io::Result<Vec<u8>> {
-    let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
-    xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
-    write(&mut xml)?;
-    let mut bytes = xml.into_inner();
-    bytes.push(b'\n');
-    Ok(bytes)
+/// The order of a method, which it has under inputs that are so many times continuously differentiable.
+fn order(solver: FmuSolver) -> &'static str {
+    match solver {
+        FmuSolver::Dop853 => "8",
+        FmuSolver::Radau5 => "5",
+        FmuSolver::RungeKutta4 { .. } => "4",
+    }
 }
 
 /// The model description of a version of FMI.
@@ -178,12 +172,9 @@ pub(crate) fn model_description(
     version: FmiVersion,
     title: &Title<'_>,
     contents: &Contents<'_>,
+    variables: &[Variable],
     experiment: &Experiment,
 ) -> io::Result<Vec<u8>> {
-    let mut variables = variables(contents);
-    if version == FmiVersion::V2 {
-        variables.retain(|variable| !variable.is_indicator); // they are a number there
-    }
     let (numbers, token, derivatives, state) = match version {
         FmiVersion::V2 => ("2.0", "guid", "providesDirectionalDerivative", "FMUstate"),
         FmiVersion::V3 => ("3.0", "instantiationToken", "providesDirectionalDerivatives", "FMUState"),
@@ -208,10 +199,11 @@ pub(crate) fn model_description(
         let mut all = vec![("modelIdentifier", title.identifier.to_owned())];
         all.extend(more.iter().map(|&(name, value)| (name, value.to_owned())));
         let with_derivatives = contents.has_derivatives.to_string();
-        all.extend([(get, yes.clone()), (serialize, yes.clone()), (derivatives, with_derivatives)]);
-        if version == FmiVersion::V2 {
-            all.push(("canNotUseMemoryManagementFunctions", yes));
-        }
+        all.extend([(get, yes.clone()), (serialize, yes.clone()), (derivatives, with_derivatives.clone())]);
+        all.push(match version {
+            FmiVersion::V2 => ("canNotUseMemoryManagementFunctions", yes),
+            FmiVersion::V3 => ("providesAdjointDerivatives", with_derivatives),
+        });
         all
     };
     document(|xml| {
@@ -221,7 +213,7 @@ pub(crate) fn model_description(
             let completed = if version == FmiVersion::V2 { &[][..] } else { &completed };
             let kinds = [
                 ("ModelExchange", abilities(completed)),
-                ("CoSimulation", abilities(&[("canHandleVariableCommunicationStepSize", "true")])),
+                ("CoSimulation", abilities(&co_simulation(version, contents, experiment.solver))),
             ];
             for (name, attributes) in kinds {
                 match version {
@@ -236,6 +228,7 @@ pub(crate) fn model_description(
                     FmiVersion::V3 => empty(xml, name, &attributes)?,
                 }
             }
+            units::definitions(variables.iter().filter_map(|variable| variable.unit), xml)?;
             inside(xml, "LogCategories", &Vec::new(), |xml| {
                 empty(xml, "Category", &vec![("name", "logStatusError".to_owned())])
             })?;
@@ -250,7 +243,7 @@ pub(crate) fn model_description(
                     .enumerate()
                     .try_for_each(|(place, variable)| write_variable(xml, version, place, variable))
             })?;
-            inside(xml, "ModelStructure", &Vec::new(), |xml| structure(xml, version, &variables))
+            inside(xml, "ModelStructure", &Vec::new(), |xml| structure(xml, version, variables))
         })
     })
 }
@@ -264,7 +257,7 @@ fn write_variable(xml: &mut Xml, version: FmiVersion, place: usize, variable: &V
     attributes.push(("causality", variable.causality.to_owned()));
     attributes.push(("variability", variable.variability.to_owned()));
     attributes.extend(variable.initial.map(|initial| ("initial", initial.to_owned())));
-    let mut of_real: Attributes = Vec::new();
+    let mut of_real: Attributes = variable.unit.map(|unit| ("unit", unit.name())).into_iter().collect();
     of_real.extend(variable.start.map(|start| ("start", number(start))));
     match version {
         FmiVersion::V2 => {
@@ -273,6 +266,9 @@ fn write_variable(xml: &mut Xml, version: FmiVersion, place: usize, variable: &V
         }
         FmiVersion::V3 => {
             attributes.extend(of_real);
+            if variable.is_intermediate {
+                attributes.push(("intermediateUpdate", "true".to_owned()));
+            }
             attributes.extend(variable.derivative.map(|of| ("derivative", of.to_string())));
             empty(xml, "Float64", &attributes)
         }
@@ -283,23 +279,25 @@ fn write_variable(xml: &mut Xml, version: FmiVersion, place: usize, variable: &V
 fn structure(xml: &mut Xml, version: FmiVersion, variables: &[Variable]) -> io::Result<()> {
     // A place is an index from 1 in FMI 2, and a value reference in FMI 3.
     let shift = usize::from(version == FmiVersion::V2);
-    let unknown = |place: usize, variable: &Variable| -> Attributes {
+    let unknown = |place: usize, depends: &[Dependency]| -> Attributes {
         let name = if version == FmiVersion::V2 { "index" } else { "valueReference" };
         let mut attributes = vec![(name, (place + shift).to_string())];
-        if let Some(depends) = &variable.depends {
-            let places: Vec<String> = depends.iter().map(|place| (place + shift).to_string()).collect();
-            attributes.push(("dependencies", places.join(" ")));
+        let list =
+            |word: &dyn Fn(&Dependency) -> String| depends.iter().map(word).collect::<Vec<_>>().join(" ");
+        attributes.push(("dependencies", list(&|it| (it.on + shift).to_string())));
+        if !depends.is_empty() {
+            attributes.push(("dependenciesKind", list(&|it| it.factor.word().to_owned())));
         }
         attributes
     };
     let all = || variables.iter().enumerate();
     let outputs: Vec<Attributes> = all()
         .filter(|(_, variable)| variable.causality == "output")
-        .map(|(place, variable)| unknown(place, variable))
+        .map(|(place, variable)| unknown(place, &variable.depends))
         .collect();
     let rates: Vec<Attributes> = all()
         .filter(|(_, variable)| variable.is_rate)
-        .map(|(place, variable)| unknown(place, variable))
+        .map(|(place, variable)| unknown(place, &variable.depends))
         .collect();
     let initial: Vec<Attributes> = all()
         .filter(|(_, variable)| {
@@ -310,14 +308,11 @@ fn structure(xml: &mut Xml, version: FmiVersion, variables: &[Variable]) -> io::
                 });
             variable.initial == Some("calculated") && (at_start || of_state)
         })
-        // Which parameters and start values they follow is not told: any.
-        .map(|(place, _)| {
-            vec![(if shift == 1 { "index" } else { "valueReference" }, (place + shift).to_string())]
-        })
+        .map(|(place, variable)| unknown(place, &variable.depends_at_start))
         .collect();
     let indicators: Vec<Attributes> = all()
         .filter(|(_, variable)| variable.is_indicator)
-        .map(|(place, variable)| unknown(place, variable))
+        .map(|(place, variable)| unknown(place, &variable.depends))
         .collect();
     match version {
         FmiVersion::V2 => {

@@ -9,6 +9,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use crate::contents::Contents;
+use crate::description;
 use crate::description::{Title, build_description, model_description};
 use crate::error::FmuError;
 use crate::experiment::Experiment;
@@ -16,12 +17,16 @@ use crate::layout::layout;
 use crate::options::{FmiVersion, FmuOptions};
 use crate::platform;
 use crate::token::token;
+use crate::units::Units;
 
 /// What is the same for all models.
-const RUNTIME: [(&str, &str); 6] = [
+const RUNTIME: [(&str, &str); 9] = [
     ("instance.h", include_str!("c/instance.h")),
+    ("inputs.h", include_str!("c/inputs.h")),
+    ("state.h", include_str!("c/state.h")),
     ("events.h", include_str!("c/events.h")),
     ("variables.h", include_str!("c/variables.h")),
+    ("derivatives.h", include_str!("c/derivatives.h")),
     ("step.h", include_str!("c/step.h")),
     ("dop853.h", include_str!("c/dop853.h")),
     ("advance.h", include_str!("c/advance.h")),
@@ -96,11 +101,12 @@ impl Fmu {
         let description = document.model.description.as_ref().map_or("", |text| text.value.as_str());
         let description = std::iter::once(description).chain(contents.notes.iter().map(String::as_str));
         let description = description.filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" ");
+        let variables = description::variables(&contents, &Units::new(document), options.version);
         let described = |token: &str| -> Result<_, FmuError> {
             let (name, description, sources) = (model.title(), description.as_str(), sources.as_slice());
             let title = Title { identifier: &identifier, name, description, token, sources };
             let header = layout(&contents, &experiment, &document.simulation, (&prefix, token));
-            let xml = model_description(options.version, &title, &contents, &experiment);
+            let xml = model_description(options.version, &title, &contents, &variables, &experiment);
             let build = build_description(&title).map_err(FmuError::Archive)?;
             Ok((header.into_bytes(), xml.map_err(FmuError::Archive)?, build))
         };

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use pc_expr::Language;
 use pc_model::document::Simulation;
 
-use crate::contents::{Contents, ParameterKind, sign};
+use crate::contents::{Contents, ParameterKind, Slope, sign};
 use crate::experiment::Experiment;
 use crate::options::FmuSolver;
 
@@ -28,11 +28,16 @@ pub(crate) fn layout(
         FmuSolver::RungeKutta4 { step } => ("FMU_RK4", step),
     };
     let resets = contents.events.iter().filter(|event| event.is_reset).count();
+    let places = |slopes: Vec<Slope<'_>>| -> Vec<(usize, usize)> {
+        slopes.iter().filter(|_| contents.has_derivatives).map(|slope| (slope.of, slope.by)).collect()
+    };
+    let (calculated_slopes, start_slopes) =
+        (places(contents.calculated_slopes()), places(contents.start_slopes()));
     let mut text = format!(
         "/* The sizes, names and settings of this model. */\n#ifndef PC_LAYOUT_H\n#define PC_LAYOUT_H\n\n#include \"{prefix}.h\"\n\n"
     );
     let mut define = |name: &str, value: String| {
-        let _ = writeln!(text, "#define FMU_{name:<12} {value}");
+        let _ = writeln!(text, "#define FMU_{name:<17} {value}");
     };
     define("TOKEN", Language::C.string(token));
     for (name, count) in [
@@ -45,6 +50,9 @@ pub(crate) fn layout(
         ("KEPT", contents.kept.len()),
         ("GUARDS", contents.guards.len()),
         ("DERIVATIVES", usize::from(contents.has_derivatives)),
+        ("CALCULATED_SLOPES", calculated_slopes.len()),
+        ("START_SLOPES", start_slopes.len()),
+        ("TIME_SLOPES", if contents.has_derivatives { contents.time_slopes().len() } else { 0 }),
     ] {
         define(name, count.to_string());
     }
@@ -100,6 +108,14 @@ pub(crate) fn layout(
         let places = contents.calculated.iter().map(|(place, _)| place.to_string());
         array("int ", "calculated_places", places.collect(), "0");
     }
+    for (name, slopes) in [("calculated", calculated_slopes), ("start", start_slopes)] {
+        if !slopes.is_empty() {
+            let of = slopes.iter().map(|(of, _)| of.to_string()).collect();
+            array("int ", &format!("{name}_slope_of"), of, "");
+            let by = slopes.iter().map(|(_, by)| by.to_string()).collect();
+            array("int ", &format!("{name}_slope_by"), by, "");
+        }
+    }
     if !contents.events.is_empty() {
         let events = &contents.events;
         array(string, "event_names", strings(&mut events.iter().map(|event| &event.name)), "");
@@ -117,5 +133,17 @@ pub(crate) fn layout(
 }
 
 /// The functions beside those of the equations.
-const FUNCTIONS: [&str; 9] =
-    ["start", "calculated", "observed", "events", "resets", "kept", "kept_slopes", "guards", "directional"];
+const FUNCTIONS: [&str; 12] = [
+    "start",
+    "calculated",
+    "observed",
+    "events",
+    "resets",
+    "kept",
+    "kept_slopes",
+    "guards",
+    "calculated_slopes",
+    "start_slopes",
+    "time_slopes",
+    "directional",
+];

@@ -6,15 +6,16 @@
 //! integrator. `docs/fmu.md` says what an FMU has of a model.
 //!
 //! Read `options` and `error`; `contents` with `events`, what an FMU is made of; `experiment`, how it integrates; then what is written:
-//! `layout`, a header in C, `description`, the XML, and `token`, which binds them; `platform`, the compiler; `fmu` puts them together.
-//! In `c`: `instance.h`, `events.h`, `variables.h`, then `step.h` and `advance.h`, the integration, and `fmi2.c` or `fmi3.c` with its
-//! headers, the interface.
+//! `layout`, a header in C, `dependencies`, `units` and `description`, the XML, whose elements `xml` writes, and `token`, which binds
+//! them; `platform`, the compiler; `fmu` puts them together. In `c`: `instance.h`, `inputs.h`, `state.h`, `events.h`, `variables.h`,
+//! `derivatives.h`, then `step.h` and `advance.h`, the integration, and `fmi2.c` or `fmi3.c` with its headers, the interface.
 //!
 //! # Around it
 //!
 //! Below: [`pc_model`], the model. Above: [pc-cli](../pc_cli/index.html), where it is `pc emit --fmu`.
 
 mod contents;
+mod dependencies;
 mod description;
 mod error;
 mod events;
@@ -24,6 +25,8 @@ mod layout;
 mod options;
 mod platform;
 mod token;
+mod units;
+mod xml;
 
 pub use error::FmuError;
 pub use fmu::Fmu;

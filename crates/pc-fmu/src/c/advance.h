@@ -24,7 +24,7 @@ static double first_length(Instance *instance, double farthest)
     const double h = fmin(state <= 1e-5 || rates <= 1e-5 ? 1e-6 : 0.01*state/rates, farthest);
     for (int s = 0; s < FMU_STATES; s++)
         instance->argument[s] = m->y[s] + h*m->rates[s];
-    fmu_rhs(m->t + h, instance->argument, m->p, later);
+    rates_at(instance, m->t + h, instance->argument, later);
     if (!all_finite(later, FMU_STATES))
         return h;
     for (int s = 0; s < FMU_STATES; s++) {
@@ -60,7 +60,7 @@ static int look(Instance *instance, double length, Sample *sample)
     if (isnan(step(instance, m->t, m->y, m->rates, length, sample->y))
         || !project(instance, m->t + length, sample->y))
         return wrong(instance, "a step to an event after t = %.17g fails", m->t);
-    fmu_events(m->t + length, sample->y, m->p, sample->values);
+    events_at(instance, m->t + length, sample->y, sample->values);
     return 1;
 }
 
@@ -117,10 +117,10 @@ static Found locate(Instance *instance, Sample *a, Sample *b)
     double rates[FMU_STATES + 1], later[FMU_STATES + 1], values[FMU_EVENTS], noise[FMU_EVENTS];
     int due[FMU_EVENTS], beyond[FMU_EVENTS], any = 0;
     const double t = m->t + b->length, moment = 64.0*DBL_EPSILON*scale;
-    fmu_rhs(t, b->y, m->p, rates);
+    rates_at(instance, t, b->y, rates);
     for (int s = 0; s < FMU_STATES; s++)
         later[s] = b->y[s] + moment*rates[s];
-    fmu_events(t + moment, later, m->p, values);
+    events_at(instance, t + moment, later, values);
     for (int i = 0; i < FMU_EVENTS; i++) {
         const int seen = crossed(m, i, b->values[i]) || crossed(m, i, values[i]);
         due[i] = seen && !(values[i]*m->side[i] > m->noise[i]);
@@ -138,6 +138,10 @@ static Found locate(Instance *instance, Sample *a, Sample *b)
     moved(m);
     if (!evaluate(instance))
         return FAILED;
+    if (instance->leaves_events) {
+        leave_event(m, due, noise, beyond, length);
+        return OCCURRED;
+    }
     return occur(instance, due, noise, beyond, length) ? OCCURRED : FAILED;
 }
 
@@ -149,7 +153,7 @@ static Found search(Instance *instance, double h, const double *end)
     Sample left, right;
     left.length = 0.0;
     memcpy(left.y, m->y, FMU_STATES*sizeof *m->y);
-    fmu_events(m->t, left.y, m->p, left.values);
+    events_at(instance, m->t, left.y, left.values);
     for (int i = 0; i < FMU_EVENTS; i++)
         if (m->side[i] == 0) {
             leave(instance, h);
@@ -162,7 +166,7 @@ static Found search(Instance *instance, double h, const double *end)
             memcpy(right.y, end, FMU_STATES*sizeof *end);
         else
             inside(instance, (double)n/PARTS, right.y);
-        fmu_events(m->t + right.length, right.y, m->p, right.values);
+        events_at(instance, m->t + right.length, right.y, right.values);
         if (any_crossed(m, right.values)) {
             double whole[FMU_STATES + 1];
             /* The polynomial is good enough to look; a step of its own says where it is. */
@@ -187,12 +191,23 @@ static Found search(Instance *instance, double h, const double *end)
 
 #endif
 
-/* Goes to time `to`, or to a terminal event before it; 0 where that fails. */
+/* After a step of the integration: the importer, where it asks for that, looks at the motion, and may shorten the way. */
+static void finish_step(Instance *instance, double *to)
+{
+    if (!instance->tell)
+        return;
+    inputs_at(instance, instance->motion.t);
+    instance->tell(instance, to);
+    *to = fmax(*to, instance->motion.t);
+}
+
+/* Goes to time `to`, or to a terminal event before it, or to one that is left to the importer, or less far where the importer
+   asks for that; 0 where that fails. */
 static int advance(Instance *instance, double to)
 {
     Motion *m = &instance->motion;
     double end[FMU_STATES + 1];
-    while (m->t < to && !m->terminal) {
+    while (m->t < to && !m->terminal && !m->waiting) {
         if (!evaluate(instance))
             return 0;
         const double left = to - m->t;
@@ -228,6 +243,7 @@ static int advance(Instance *instance, double to)
         case FAILED:
             return 0;
         case OCCURRED:
+            finish_step(instance, &to);
             continue;
         case CLEAR:
             break;
@@ -240,6 +256,7 @@ static int advance(Instance *instance, double to)
         factor = refused ? fmin(factor, 1.0) : factor;
         /* A step that had to end here says little of how long one may be. */
         m->next = ends && !refused ? fmax(h*factor, planned) : h*factor;
+        finish_step(instance, &to);
     }
     return 1;
 }
@@ -250,13 +267,18 @@ static int do_step(Instance *instance, double t, double length)
     Motion *m = &instance->motion;
     if (m->terminal)
         return wrong(instance, "a terminal event has ended the simulation at t = %.17g", m->t);
+    if (m->waiting)
+        return wrong(instance, "an event has occurred at t = %.17g: it is dealt with in event mode", m->t);
     if (!(length >= 0.0) || !isfinite(t + length))
         return wrong(instance, "a step of length %g", length);
     if (fabs(t - m->t) > 1e-9*fmax(fmax(fabs(t), fabs(m->t)), length))
         return wrong(instance, "a step from t = %.17g, but the instance is at t = %.17g", t, m->t);
     m->phase = STEPPING;
     m->t = t;
-    return advance(instance, t + length);
+    begin_inputs(instance, t + length);
+    const int right = advance(instance, t + length);
+    end_inputs(instance);
+    return right;
 }
 
 #endif

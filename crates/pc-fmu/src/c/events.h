@@ -2,7 +2,7 @@
 #ifndef PC_EVENTS_H
 #define PC_EVENTS_H
 
-#include "instance.h"
+#include "state.h"
 
 #if FMU_EVENTS > 0
 
@@ -51,7 +51,7 @@ static void short_step(Instance *instance, double h, double *z)
     for (int stage = 0; stage < 4; stage++) {
         for (int i = 0; i < FMU_STATES; i++)
             z[i] = m->y[i] + (stage > 0 ? part[stage]*h*k[stage - 1][i] : 0.0);
-        fmu_rhs(m->t + part[stage]*h, z, m->p, k[stage]);
+        rates_at(instance, m->t + part[stage]*h, z, k[stage]);
     }
     for (int i = 0; i < FMU_STATES; i++)
         z[i] = m->y[i] + h/6.0*(k[0][i] + 2.0*k[1][i] + 2.0*k[2][i] + k[3][i]);
@@ -63,7 +63,7 @@ static void leave(Instance *instance, double length)
     static const double early[4] = {1e-12, 1e-9, 1e-6, 1e-3};
     Motion *m = &instance->motion;
     double z[FMU_STATES + 1], start[FMU_EVENTS], values[FMU_EVENTS];
-    fmu_events(m->t, m->y, m->p, start);
+    events_at(instance, m->t, m->y, start);
     for (int i = 0; i < FMU_EVENTS; i++)
         if (m->side[i] == 0)
             m->noise[i] = fmax(m->noise[i], DBL_MIN);
@@ -75,7 +75,7 @@ static void leave(Instance *instance, double length)
             return;
         const double h = fmax(early[n]*length, 4.0*DBL_EPSILON*fabs(m->t));
         short_step(instance, h, z);
-        fmu_events(m->t + h, z, m->p, values);
+        events_at(instance, m->t + h, z, values);
         for (int i = 0; i < FMU_EVENTS; i++)
             if (m->side[i] == 0 && fabs(values[i]) > m->noise[i])
                 m->side[i] = values[i] > 0.0 ? 1 : -1;
@@ -158,6 +158,7 @@ static int occur(Instance *instance, const int *due, const double *noise, const 
     Motion *m = &instance->motion;
     double values[FMU_EVENTS];
     int reset = 0;
+    inputs_at(instance, m->t);
     for (int i = 0; i < FMU_EVENTS; i++) {
         if (!due[i])
             continue;
@@ -219,10 +220,34 @@ static void rounding(Motion *m, const double *values, double *sums)
     }
 }
 
-/* At an event that an importer has found: what is due, if anything. Whether states were reset is left in `changed`. */
+/* Leaves an event to the importer. */
+static void leave_event(Motion *m, const int *due, const double *noise, const int *beyond, double length)
+{
+    m->waiting = 1;
+    m->due_length = length;
+    memcpy(m->due, due, FMU_EVENTS*sizeof *due);
+    memcpy(m->beyond, beyond, FMU_EVENTS*sizeof *beyond);
+    memcpy(m->due_noise, noise, FMU_EVENTS*sizeof *noise);
+}
+
+/* Deals with the event that was left. */
+static int take_event(Instance *instance, int *changed)
+{
+    Motion *m = &instance->motion;
+    *changed = 0;
+    for (int i = 0; i < FMU_EVENTS; i++)
+        *changed |= m->due[i] && event_resets[i];
+    m->waiting = 0;
+    return occur(instance, m->due, m->due_noise, m->beyond, m->due_length);
+}
+
+/* At an event that an importer has found, or that was left to it: what is due, if anything. Whether states were reset is left in
+   `changed`. */
 static int discrete_update(Instance *instance, int *changed)
 {
     Motion *m = &instance->motion;
+    if (m->waiting)
+        return take_event(instance, changed);
     double values[FMU_EVENTS], noise[FMU_EVENTS];
     int due[FMU_EVENTS], beyond[FMU_EVENTS], any = 0;
     fmu_events(m->t, m->y, m->p, values);

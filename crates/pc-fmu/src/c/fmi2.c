@@ -1,6 +1,7 @@
 /* The functions of FMI 2.0, for Model Exchange and Co-Simulation [Modelica Association, Functional Mock-up Interface for
    Model Exchange and Co-Simulation, version 2.0.4 (2022)]. */
 #include "advance.h"
+#include "derivatives.h"
 
 #if defined _WIN32
 #define EXPORT __declspec(dllexport)
@@ -332,10 +333,13 @@ EXPORT fmi2Status FMI(fmi2GetNominalsOfContinuousStates)(fmi2Component c, fmi2Re
 EXPORT fmi2Status FMI(fmi2SetRealInputDerivatives)(fmi2Component c, const fmi2ValueReference of[], size_t count,
                                                    const fmi2Integer order[], const fmi2Real values[])
 {
-    (void)of;
-    (void)order;
-    (void)values;
-    return count == 0 ? fmi2OK : status(wrong(c, "inputs are constant between communication points"));
+    for (size_t i = 0; i < count; i++) {
+        if (!is_input(of[i]))
+            return status(wrong(c, "the variable of value reference %u is no input", of[i]));
+        if (!set_slope(c, (int)(of[i] - OF_PARAMETERS), order[i], values[i]))
+            return fmi2Error;
+    }
+    return fmi2OK;
 }
 
 EXPORT fmi2Status FMI(fmi2GetRealOutputDerivatives)(fmi2Component c, const fmi2ValueReference of[], size_t count,

@@ -1,13 +1,16 @@
 /* The functions of FMI 3.0, for Model Exchange and Co-Simulation [Modelica Association, Functional Mock-up Interface
    Specification, version 3.0.1 (2023)]. */
 #include "advance.h"
+#include "derivatives.h"
 
 #include "fmi3_types.h"
 
-/* The logger is kept beside the instance: C does not turn pointers to functions into others. */
+/* Callbacks are kept beside the instance: C does not turn pointers to functions into others. */
 typedef struct {
     Instance instance;
     fmi3LogMessageCallback logger;
+    fmi3IntermediateUpdateCallback update;
+    bool early_return; /* whether a step may end before its end */
 } Component;
 
 static void log_error(Instance *instance, const char *text)
@@ -69,6 +72,55 @@ static fmi3Instance instantiate(fmi3String name, fmi3String token, fmi3InstanceE
     return component;
 }
 
+/* Intermediate update: the importer sets inputs at a time for which the integration needs them, ... */
+static void ask(Instance *instance, double t)
+{
+    const Component *component = (const Component *)instance;
+    fmi3Boolean wanted = false;
+    fmi3Float64 when = t;
+    instance->called = MAY_SET;
+    component->update(instance->environment, t, true, false, false, false, &wanted, &when);
+    instance->called = UNCALLED;
+}
+
+/* ... and looks at each step of the integration that was accepted, after which it may ask for an early return. */
+static void tell(Instance *instance, double *to)
+{
+    const Component *component = (const Component *)instance;
+    const double t = instance->motion.t;
+    fmi3Boolean wanted = false;
+    fmi3Float64 when = t;
+    instance->called = MAY_GET;
+    component->update(instance->environment, t, false, true, true, component->early_return, &wanted, &when);
+    instance->called = UNCALLED;
+    if (wanted && component->early_return && when < *to)
+        *to = when;
+}
+
+/* Takes note of the variables that the importer accesses in the middle of steps. */
+static int set_intermediate(Component *component, const fmi3ValueReference of[], size_t count,
+                            fmi3IntermediateUpdateCallback update)
+{
+    Instance *instance = &component->instance;
+    if (!update)
+        return 1;
+    component->update = update;
+    instance->tell = tell;
+    for (size_t i = 0; i < count; i++)
+        if (is_input(of[i])) {
+            instance->provided[of[i] - OF_PARAMETERS] = 1;
+            instance->ask = ask;
+        } else if (!is_continuous(of[i])) {
+            return wrong(instance, "the variable of value reference %u is not accessible in intermediate updates", of[i]);
+        }
+    return 1;
+}
+
+static int may_use_event_mode(Instance *instance, int event_mode)
+{
+    return !event_mode || FMU_EVENTS > 0 || wrong(instance, "there is no event mode: the model has no events");
+}
+
 EXPORT fmi3Instance FMI(fmi3InstantiateModelExchange)(fmi3String name, fmi3String token, fmi3String resources,
                                                       fmi3Boolean visible, fmi3Boolean logging,
                                                       fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger)
@@ -88,12 +140,18 @@ EXPORT fmi3Instance FMI(fmi3InstantiateCoSimulation)(fmi3String name, fmi3String
     (void)resources;
     (void)visible;
     (void)logging;
-    (void)event_mode;
-    (void)early_return;
-    (void)intermediate;
-    (void)intermediate_count;
-    (void)update;
-    return instantiate(name, token, environment, logger);
+    Component *component = instantiate(name, token, environment, logger);
+    if (!component)
+        return NULL;
+    component->early_return = early_return;
+    /* Where a step has to go to its end, its events occur on the way. */
+    component->instance.leaves_events = event_mode && early_return;
+    if (!may_use_event_mode(&component->instance, event_mode)
+        || !set_intermediate(component, intermediate, intermediate_count, update)) {
+        free(component);
+        return NULL;
+    }
+    return component;
 }
 
 EXPORT fmi3Instance FMI(fmi3InstantiateScheduledExecution)(fmi3String name, fmi3String token, fmi3String resources,
@@ -241,6 +299,16 @@ EXPORT fmi3Status FMI(fmi3GetDirectionalDerivative)(fmi3Instance c, const fmi3Va
     return status(directional(c, unknowns, unknown_count, knowns, known_count, seed, sensitivity));
 }
 
+EXPORT fmi3Status FMI(fmi3GetAdjointDerivative)(fmi3Instance c, const fmi3ValueReference unknowns[],
+                                                size_t unknown_count, const fmi3ValueReference knowns[],
+                                                size_t known_count, const fmi3Float64 seed[], size_t seed_count,
+                                                fmi3Float64 sensitivity[], size_t sensitivity_count)
+{
+    if (seed_count != unknown_count || sensitivity_count != known_count)
+        return refuse(c, "array");
+    return status(adjoint(c, unknowns, unknown_count, knowns, known_count, seed, sensitivity));
+}
+
 EXPORT fmi3Status FMI(fmi3EvaluateDiscreteStates)(fmi3Instance c)
 {
     (void)c;
@@ -346,9 +414,11 @@ EXPORT fmi3Status FMI(fmi3DoStep)(fmi3Instance c, fmi3Float64 t, fmi3Float64 len
 {
     (void)never_back;
     Instance *instance = c;
+    const Component *component = c;
     const int right = do_step(instance, t, length);
-    *event = *early = false;
+    *event = instance->motion.waiting;
     *terminate = instance->motion.terminal;
     *last = instance->motion.t;
+    *early = right && component->early_return && *last < t + length;
     return status(right);
 }

@@ -1,5 +1,5 @@
-/* The functions of FMI 3.0 for what no model here has: variables of other types than Float64, clocks, structural parameters,
-   adjoint derivatives. They say so. */
+/* The functions of FMI 3.0 for what no model here has: variables of other types than Float64, clocks, structural
+   parameters. They say so. */
 #ifndef PC_FMI3_NONE_H
 #define PC_FMI3_NONE_H
 
@@ -85,22 +85,6 @@ EXPORT fmi3Status FMI(fmi3GetVariableDependencies)(fmi3Instance c, fmi3ValueRefe
     (void)kinds;
     (void)dependencies;
     return refuse(c, "dependency that changes");
-}
-
-EXPORT fmi3Status FMI(fmi3GetAdjointDerivative)(fmi3Instance c, const fmi3ValueReference unknowns[],
-                                                size_t unknown_count, const fmi3ValueReference knowns[],
-                                                size_t known_count, const fmi3Float64 seed[], size_t seed_count,
-                                                fmi3Float64 sensitivity[], size_t sensitivity_count)
-{
-    (void)unknowns;
-    (void)unknown_count;
-    (void)knowns;
-    (void)known_count;
-    (void)seed;
-    (void)seed_count;
-    (void)sensitivity;
-    (void)sensitivity_count;
-    return refuse(c, "adjoint derivative");
 }
 
 EXPORT fmi3Status FMI(fmi3EnterConfigurationMode)(fmi3Instance c)

@@ -2,7 +2,7 @@
 #ifndef PC_STEP_H
 #define PC_STEP_H
 
-#include "instance.h"
+#include "state.h"
 
 static double weight(const Motion *m, int s, double y)
 {
@@ -25,7 +25,7 @@ static void stage(Instance *instance, int i, double t, const double *y, double h
                 sum += dop853_a[i][j]*instance->stages[j][s];
         z[s] = y[s] + h*sum;
     }
-    fmu_rhs(t + dop853_c[i]*h, z, instance->motion.p, instance->stages[i]);
+    rates_at(instance, t + dop853_c[i]*h, z, instance->stages[i]);
 }
 
 /* The state after a step of length h from (t, y), where the rates are f; its error against the tolerances, which is no number
@@ -171,6 +171,7 @@ static double step(Instance *instance, double t, const double *y, const double *
     memcpy(instance->step_start, start, sizeof start);
     instance->step_length = h;
 
+    inputs_at(instance, t);
     fmu_jacobian(t, start, m->p, instance->jacobian);
     for (int i = 0; i < ALL; i++)
         for (int j = 0; j < ALL; j++) {
@@ -187,7 +188,7 @@ static double step(Instance *instance, double t, const double *y, const double *
         for (int n = 0; n < 3; n++) {
             for (int s = 0; s < FMU_STATES; s++)
                 instance->argument[s] = start[s] + z_of[n][s];
-            fmu_rhs(t + c[n]*h, instance->argument, m->p, instance->stages[n]);
+            rates_at(instance, t + c[n]*h, instance->argument, instance->stages[n]);
             if (!all_finite(instance->stages[n], FMU_STATES))
                 return NAN;
         }
@@ -240,7 +241,7 @@ static double step(Instance *instance, double t, const double *y, const double *
             break;
         for (int s = 0; s < FMU_STATES; s++)
             instance->argument[s] = start[s] + change[s];
-        fmu_rhs(t, instance->argument, m->p, rates);
+        rates_at(instance, t, instance->argument, rates);
     }
     return all_finite(end, FMU_STATES) ? error : NAN;
 }
@@ -278,14 +279,13 @@ static const double ORDER = 4.0;
 static double step(Instance *instance, double t, const double *y, const double *f, double h, double *end)
 {
     static const double part[4] = {0.0, 0.5, 0.5, 1.0};
-    const double *p = instance->motion.p;
     memcpy(instance->step_start, y, FMU_STATES*sizeof *y);
     memcpy(instance->stages[0], f, FMU_STATES*sizeof *f);
     instance->step_length = h;
     for (int i = 1; i < 4; i++) {
         for (int s = 0; s < FMU_STATES; s++)
             instance->argument[s] = instance->step_start[s] + part[i]*h*instance->stages[i - 1][s];
-        fmu_rhs(t + part[i]*h, instance->argument, p, instance->stages[i]);
+        rates_at(instance, t + part[i]*h, instance->argument, instance->stages[i]);
     }
     for (int s = 0; s < FMU_STATES; s++)
         end[s] = instance->step_start[s] + h/6.0*(instance->stages[0][s] + 2.0*instance->stages[1][s]
@@ -297,7 +297,7 @@ static double step(Instance *instance, double t, const double *y, const double *
 static void prepare_dense(Instance *instance, double t, const double *end)
 {
     const double h = instance->step_length, *y = instance->step_start;
-    fmu_rhs(t + h, end, instance->motion.p, instance->stages[4]);
+    rates_at(instance, t + h, end, instance->stages[4]);
     for (int s = 0; s < FMU_STATES; s++) {
         const double rise = end[s] - y[s], bend = h*instance->stages[0][s] - rise;
         instance->polynomial[0][s] = rise;

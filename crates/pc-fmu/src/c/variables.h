@@ -15,9 +15,23 @@ enum {
     OF_NOTHING = OF_INDICATORS + FMU_EVENTS
 };
 
+/* Whether a variable is computed and continuous. */
+static int is_continuous(unsigned reference)
+{
+    return (reference >= OF_STATES && reference < OF_PARAMETERS) || (reference >= OF_OBSERVED && reference < OF_INDICATORS);
+}
+
+static int is_input(unsigned reference)
+{
+    return reference >= OF_PARAMETERS && reference < OF_OBSERVED
+           && parameter_kinds[reference - OF_PARAMETERS] == FMU_INPUT;
+}
+
 static int get_variable(Instance *instance, unsigned reference, double *value)
 {
     Motion *m = &instance->motion;
+    if (instance->called == MAY_SET)
+        return wrong(instance, "no variable has a value yet at this time: inputs are asked for");
     if (reference == OF_TIME)
         *value = m->t;
     else if (reference < OF_RATES)
@@ -44,8 +58,24 @@ static int get_variable(Instance *instance, unsigned reference, double *value)
     return 1;
 }
 
+/* Sets an input in the middle of a step. */
+static int provide(Instance *instance, unsigned reference, double value)
+{
+    if (instance->called != MAY_SET)
+        return wrong(instance, "no variable can be set at the end of a step of the integration");
+    if (!is_input(reference) || !instance->provided[reference - OF_PARAMETERS])
+        return wrong(instance, "the variable of value reference %u is no input that was named as an intermediate variable",
+                     reference);
+    if (!isfinite(value))
+        return wrong(instance, "the input %s is set to %g", parameter_names[reference - OF_PARAMETERS], value);
+    instance->motion.p[reference - OF_PARAMETERS] = value;
+    return 1;
+}
+
 static int set_variable(Instance *instance, unsigned reference, double value)
 {
+    if (instance->called != UNCALLED)
+        return provide(instance, reference, value);
     Motion *m = &instance->motion;
     const int begins = m->phase == INSTANTIATED || m->phase == INITIALIZING;
     if (!isfinite(value))
@@ -71,52 +101,6 @@ static int set_variable(Instance *instance, unsigned reference, double value)
     follow(m);
     return 1;
 }
-
-#if FMU_DERIVATIVES
-/* The derivatives of some variables along a direction of states and inputs. */
-static int directional(Instance *instance, const unsigned *unknowns, size_t m_unknowns, const unsigned *knowns,
-                       size_t m_knowns, const double *seed, double *sensitivity)
-{
-    Motion *m = &instance->motion;
-    double along[FMU_STATES + 2*FMU_PARAMETERS + 1] = {0.0}, values[FMU_STATES + FMU_OBSERVED + 1];
-    double *of_states = along + FMU_PARAMETERS, *of_parameters = of_states + FMU_STATES;
-    memcpy(along, m->p, FMU_PARAMETERS*sizeof *along);
-    for (size_t n = 0; n < m_knowns; n++) {
-        const unsigned known = knowns[n];
-        if (known >= OF_STATES && known < OF_RATES)
-            of_states[known - OF_STATES] += seed[n];
-        else if (known >= OF_PARAMETERS && known < OF_OBSERVED && parameter_kinds[known - OF_PARAMETERS] == FMU_INPUT)
-            of_parameters[known - OF_PARAMETERS] += seed[n];
-        else
-            return wrong(instance, "derivatives are taken by states and inputs, not by value reference %u", known);
-    }
-    fmu_directional(m->t, m->y, along, values);
-    for (size_t n = 0; n < m_unknowns; n++) {
-        const unsigned unknown = unknowns[n];
-        if (unknown >= OF_STATES && unknown < OF_RATES)
-            sensitivity[n] = of_states[unknown - OF_STATES];
-        else if (unknown >= OF_RATES && unknown < OF_PARAMETERS)
-            sensitivity[n] = values[unknown - OF_RATES];
-        else if (unknown >= OF_OBSERVED && unknown < OF_INDICATORS)
-            sensitivity[n] = values[FMU_STATES + unknown - OF_OBSERVED];
-        else
-            return wrong(instance, "there are no derivatives of value reference %u", unknown);
-    }
-    return 1;
-}
-#else
-static int directional(Instance *instance, const unsigned *unknowns, size_t m_unknowns, const unsigned *knowns,
-                       size_t m_knowns, const double *seed, double *sensitivity)
-{
-    (void)unknowns;
-    (void)m_unknowns;
-    (void)knowns;
-    (void)m_knowns;
-    (void)seed;
-    (void)sensitivity;
-    return wrong(instance, "the equations of this model are too long for their derivatives");
-}
-#endif
 
 /* The end of the initialization. */
 static int begin(Instance *instance)
