@@ -179,8 +179,8 @@ const REFUSED: &[(&str, &str)] = &[
         "r.urdf:1:23: not valid XML: expected 'link' tag, not 'robot' at 1:23\n    <robot><link name='a'></robot>\n                          ^\n  help: the formats that can be imported are XML",
     ),
     (
-        "<sdf/>",
-        "r.urdf:1:1: <sdf>: the root is <sdf>\n    <sdf/>\n    ^^^^\n  help: the root of URDF is <robot>",
+        "<svg/>",
+        "r.urdf:1:1: <svg>: the root is <svg>\n    <svg/>\n    ^^^^\n  help: the root of URDF is <robot>, that of MJCF <mujoco>, that of SDF <sdf>",
     ),
     (
         "<robot/>",

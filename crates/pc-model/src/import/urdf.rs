@@ -30,7 +30,7 @@ impl Urdf<'_> {
             return Err(self.xml.wrong(
                 root,
                 format!("the root is <{found}>"),
-                "the root of URDF is <robot>",
+                "the root of URDF is <robot>, that of MJCF <mujoco>, that of SDF <sdf>",
             ));
         }
         let mut robot = Robot {

@@ -251,7 +251,7 @@ fn what_is_wrong_is_shown_where_it_stands() {
 fn what_is_left_out_is_noted() {
     let (_, notes) = model_of(
         r#"<mujoco><option density="1.2"/><worldbody><body name="b" gravcomp="1"><joint name="j" range="-10 20"/>
-        <geom size="0.1"/></body></worldbody>
+        <geom size="0.1"/><body name="c"><joint name="k" type="ball" stiffness="2"/><geom size="0.1"/></body></body></worldbody>
         <tendon><spatial/><fixed/></tendon><contact><pair/></contact>
         <equality><connect site1="s" site2="t"/><weld body1="b" active="false"/><tendon tendon1="t"/></equality>
         <actuator><muscle joint="j"/><position joint="j" dampratio="1"/><motor joint="j" ctrlrange="-1 1"/></actuator></mujoco>"#,

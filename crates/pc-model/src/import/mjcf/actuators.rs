@@ -66,6 +66,11 @@ pub(super) fn read<'d>(
             robot.notes.push(format!("the range of {what} of the actuator `{name}`, {text}, is left out"));
         }
     }
+    for key in ["armature", "damping"] {
+        if element.list(key)?.is_some_and(|values| values.iter().any(|value| *value != 0.0)) {
+            robot.notes.push(format!("the {key} of the actuator `{name}` is left out"));
+        }
+    }
     robot.actuators.push(Actuator {
         joint: joint.name.clone(),
         gain: gear * gain,

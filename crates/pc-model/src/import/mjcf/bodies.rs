@@ -161,6 +161,9 @@ impl<'e, 'a, 'd> Bodies<'e, 'a, 'd> {
                 );
                 joint.remarks.push(remark);
             }
+            if joint.stiffness != 0.0 && !joint.kind.is_single() {
+                self.robot.notes.push(format!("the stiffness of the joint `{}` is left out", joint.name));
+            }
             let is_last = index + 1 == joints.len();
             joint.child = match is_last {
                 true => name.clone(),
