@@ -87,7 +87,7 @@ impl<'g> Tree<'g> {
         let bodies: Vec<TreeBody<'g>> = bodies.into_iter().collect();
         let order = from_root_to_tip(&bodies)?;
         let (stands, links, own) = (Vec::new(), Vec::new(), Vec::new());
-        let mut tree = Tree { graph, stands, links, own, order, bodies };
+        let mut tree = Tree { graph, bodies, stands, links, own, order };
         let world = Stand { link: None, place: ZERO, rotation: unit() };
         let mut stands = vec![world; tree.bodies.len()];
         let mut own = vec![0..0; tree.bodies.len()];

@@ -10,7 +10,7 @@ use crate::import::error::UrdfError;
 use crate::import::inertia::{along_axes_of_the_link, impossible};
 use crate::import::massless;
 use crate::import::names::Names;
-use crate::import::robot::{Inertial, Joint, Kind, Link, Mimic, Pose, Robot};
+use crate::import::robot::{Inertial, Joint, Kind, Link, Pose, Robot};
 use crate::import::xml::parse;
 use crate::import::{additions, mjcf, sdf, urdf};
 

@@ -98,17 +98,9 @@ impl Products {
         entries: &mut [f64],
         storage: Storage,
     ) -> Result<(), EvaluationFailure> {
-        self.prepare();
+        self.approach(at);
         let Some(kernels) = self.kernels.get() else { return Err(self.parts.blame(at)) };
-        let [known, frame] = &mut self.frames;
-        let (dim, given) = (at.y.len(), 1 + at.y.len() + at.p.len());
-        let time = [at.t];
-        let values = [&time, at.y, at.p].into_iter().flatten();
-        known.iter_mut().zip(values).for_each(|(row, &value)| *row = Lanes::splat(value));
-        kernels.known.run(known);
-        let (of_point, of_known) = frame[dim..dim + self.parts.product.parameters_len()].split_at_mut(given);
-        of_point.copy_from_slice(&known[..given]);
-        of_known.copy_from_slice(&known[kernels.known.first_output()..][..of_known.len()]);
+        let (dim, frame) = (at.y.len(), &mut self.frames[1]);
         let is_dense = storage == Storage::Dense;
         if is_dense {
             entries.fill(0.0);
@@ -134,6 +126,44 @@ impl Products {
             }
         }
         if is_finite { Ok(()) } else { Err(self.parts.blame(at)) }
+    }
+
+    /// Evaluates (∂ẏ/∂y) v.
+    ///
+    /// # Errors
+    /// As for [`eval`](Products::eval).
+    pub(crate) fn along(
+        &mut self,
+        at: Point<'_>,
+        v: &[f64],
+        product: &mut [f64],
+    ) -> Result<(), EvaluationFailure> {
+        self.approach(at);
+        let Some(kernels) = self.kernels.get() else { return Err(self.parts.blame(at)) };
+        let frame = &mut self.frames[1];
+        frame.iter_mut().zip(v).for_each(|(row, &component)| *row = Lanes::splat(component));
+        kernels.product.run(frame);
+        let products = &frame[kernels.product.first_output()..];
+        product.iter_mut().zip(products).for_each(|(value, row)| *value = row.0[0]);
+        match product.iter().all(|value| value.is_finite()) {
+            true => Ok(()),
+            false => Err(self.parts.blame(at)),
+        }
+    }
+
+    /// Computes what all products at a point share.
+    fn approach(&mut self, at: Point<'_>) {
+        self.prepare();
+        let Some(kernels) = self.kernels.get() else { return };
+        let [known, frame] = &mut self.frames;
+        let (dim, given) = (at.y.len(), 1 + at.y.len() + at.p.len());
+        let time = [at.t];
+        let values = [&time, at.y, at.p].into_iter().flatten();
+        known.iter_mut().zip(values).for_each(|(row, &value)| *row = Lanes::splat(value));
+        kernels.known.run(known);
+        let (of_point, of_known) = frame[dim..dim + self.parts.product.parameters_len()].split_at_mut(given);
+        of_point.copy_from_slice(&known[..given]);
+        of_known.copy_from_slice(&known[kernels.known.first_output()..][..of_known.len()]);
     }
 }
 

@@ -27,7 +27,10 @@ pub(crate) struct Unrolled {
     /// A faster form of the same program, if much of it depends on parameters alone.
     prologue: Option<Box<Prologue>>,
     pivots: Pivots,
-    jacobian: Option<Jacobian>,
+    /// An expression for each entry of ∂ẏ/∂y.
+    jacobian: Option<Columns>,
+    /// ∂ẏ/∂y and (∂ẏ/∂y) v of a large tree, where the entry for each pair of bodies is long.
+    products: Option<Box<Products>>,
     /// Computes (∂ẏ/∂y) v from the state (y, v).
     jvp: Option<Evaluator>,
     /// y, v
@@ -39,15 +42,6 @@ pub(crate) struct Unrolled {
     /// The Taylor series of the outputs of `rates`, made on first use.
     series: Option<TaylorSeries>,
     varied: VariedSeries,
-}
-
-/// ∂ẏ/∂y
-#[derive(Clone, Debug)]
-enum Jacobian {
-    /// An expression for each entry.
-    Columns(Columns),
-    /// Products with unit vectors, for large trees, where the entry for each pair of bodies is long.
-    Products(Box<Products>),
 }
 
 impl Unrolled {
@@ -79,21 +73,18 @@ impl Unrolled {
             prologue: Prologue::of(&program, &varying, options.backend, rates.len()).map(Box::new),
             rates: Evaluator::with_leading(program, options.backend, rates.len()),
             pivots,
-            jacobian: match options.jacobian {
-                true if by_products => {
+            jacobian: columns(options.jacobian && !by_products, &system.state)?,
+            products: (by_products && (options.jacobian || options.jvp))
+                .then(|| {
                     // The accelerations stay symbols.
                     let (v, product) = product(system, &Linearised::new(system, &factors, &system.unknowns));
                     let unknowns = (&system.unknowns[..], &unknowns[..]);
-                    Some(Jacobian::Products(Box::new(Products::new(
-                        graph,
-                        &inputs,
-                        unknowns,
-                        (&v, &product),
-                    )?)))
-                }
-                wanted => columns(wanted, &system.state)?.map(Jacobian::Columns),
-            },
-            jvp: options.jvp.then(|| jvp(system, &linearised, options.backend)).transpose()?,
+                    Products::new(graph, &inputs, unknowns, (&v, &product)).map(Box::new)
+                })
+                .transpose()?,
+            jvp: (options.jvp && !by_products)
+                .then(|| jvp(system, &linearised, options.backend))
+                .transpose()?,
             known: vec![0.0; 2 * system.state.len()],
             parameter_jacobian: columns(options.parameter_jacobian, &system.parameter_symbols())?,
             time_derivative: columns(options.time_derivative, &[system.time])?,
@@ -168,10 +159,11 @@ impl Unrolled {
 
     /// Compiles the Jacobian, which is otherwise compiled on first use.
     pub(crate) fn prepare_jacobian(&mut self) {
-        match &mut self.jacobian {
-            Some(Jacobian::Columns(columns)) => columns.prepare(),
-            Some(Jacobian::Products(products)) => products.prepare(),
-            None => {}
+        if let Some(columns) = &mut self.jacobian {
+            columns.prepare();
+        }
+        if let Some(products) = &mut self.products {
+            products.prepare();
         }
     }
 
@@ -248,11 +240,11 @@ impl Unrolled {
         entries: &mut [f64],
         storage: Storage,
     ) -> Result<(), EvaluationFailure> {
-        let jacobian = self.jacobian.as_mut().ok_or(EvaluationFailure::NotCompiled { what: "Jacobian" })?;
-        match jacobian {
-            Jacobian::Columns(columns) => columns.eval(Point { t, y, p }, entries, storage),
-            Jacobian::Products(products) => products.eval(Point { t, y, p }, entries, storage),
+        if let Some(products) = &mut self.products {
+            return products.eval(Point { t, y, p }, entries, storage);
         }
+        let jacobian = self.jacobian.as_mut().ok_or(EvaluationFailure::NotCompiled { what: "Jacobian" })?;
+        jacobian.eval(Point { t, y, p }, entries, storage)
     }
 
     pub(crate) fn parameter_jacobian(
@@ -281,6 +273,9 @@ impl Unrolled {
         v: &[f64],
         product: &mut [f64],
     ) -> Result<(), EvaluationFailure> {
+        if let Some(products) = &mut self.products {
+            return products.along(Point { t, y, p }, v, product);
+        }
         let jvp =
             self.jvp.as_mut().ok_or(EvaluationFailure::NotCompiled { what: "product with its Jacobian" })?;
         let (state, direction) = self.known.split_at_mut(y.len());
@@ -291,10 +286,10 @@ impl Unrolled {
     }
 
     pub(crate) fn pattern(&self) -> Option<&Pattern> {
-        self.jacobian.as_ref().map(|jacobian| match jacobian {
-            Jacobian::Columns(columns) => columns.pattern(),
-            Jacobian::Products(products) => products.pattern(),
-        })
+        match &self.products {
+            Some(products) => Some(products.pattern()),
+            None => self.jacobian.as_ref().map(Columns::pattern),
+        }
     }
 }
 
