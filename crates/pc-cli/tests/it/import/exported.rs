@@ -114,7 +114,7 @@ fn what_has_no_place_is_named() {
         match exported(&text) {
             Ok((urdf, _)) => complaints.push(format!("{message}\nis written:\n{urdf}")),
             Err(error) if !error.contains(message) => {
-                complaints.push(format!("{error}\ninstead of\n{message}"))
+                complaints.push(format!("{error}\ninstead of\n{message}"));
             }
             Err(_) => {}
         }
