@@ -125,7 +125,7 @@ unsafe fn say(
     let entries = entries.as_ptr();
     // SAFETY: as promised.
     unsafe {
-        match function % 75 {
+        match function % 79 {
             0..4 => pc_model_add_coordinate(model, a, x, error),
             4..8 => pc_model_set_kinetic(model, b, error),
             8 => pc_model_add_quasi_velocity(model, a, b, x, error),
@@ -169,10 +169,6 @@ unsafe fn say(
             65 => pc_model_set_joint_axis(model, a, [x, 1.0, 0.0].as_ptr(), error),
             66 => pc_model_set_joint_axes(model, a, [x, 1.0, 0.0].as_ptr(), [0.0, x, 1.0].as_ptr(), error),
             67 => pc_model_set_joint_pitch(model, a, b, error),
-            44 => pc_model_set_joint_gear(model, a, a, if yes == 1 { b } else { ptr::null() }, z, error),
-            45 => pc_model_set_joint_armature(model, a, b, error),
-            46 => pc_model_set_joint_spring(model, a, b, if yes == 1 { z } else { ptr::null() }, error),
-            47 => pc_model_set_joint_damping(model, a, b, error),
             68 => pc_model_set_joint_rotation(model, a, entries, count, error),
             69 => pc_model_set_joint_turns(model, a, c"zx".as_ptr(), entries, count, error),
             70 => pc_model_name_joint_coordinates(model, a, entries, count, error),
@@ -186,6 +182,10 @@ unsafe fn say(
                 1 => pc_model_set_loop_length(model, a, b, error),
                 _ => pc_model_set_loop_axes(model, a, [x, 1.0, 0.0].as_ptr(), [0.0, x, 1.0].as_ptr(), error),
             },
+            75 => pc_model_set_joint_gear(model, a, a, if yes == 1 { b } else { ptr::null() }, z, error),
+            76 => pc_model_set_joint_armature(model, a, b, error),
+            77 => pc_model_set_joint_spring(model, a, b, if yes == 1 { z } else { ptr::null() }, error),
+            78 => pc_model_set_joint_damping(model, a, b, error),
             44 => pc_model_keep(model, if yes == 1 { c"energy".as_ptr() } else { a }, error),
             45 => pc_model_project_start(model, yes, error),
             46 => pc_model_observe_reactions(model, yes, error),

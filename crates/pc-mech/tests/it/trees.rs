@@ -373,7 +373,7 @@ fn geared(cases: u32, count: usize, check: impl Fn(&[Hung], &[f64])) {
         if others.is_empty() {
             bodies[*first].follows = Some((*last, -0.8, 0.1));
         }
-        for (n, &i) in single.iter().enumerate().filter(|(n, _)| (n + count) % 2 == 0) {
+        for (n, &i) in single.iter().enumerate().filter(|(n, _)| (n + count).is_multiple_of(2)) {
             bodies[i].drive = Some([0.4, 3.0, -0.1 * n as f64, 0.2]);
         }
         check(&bodies, numbers);

@@ -117,7 +117,7 @@ impl<'a> Tree<'a> {
             let first = all.len();
             let defined =
                 |from: usize| (first + from..first + from + 9).map(Term::Definition).collect::<Vec<_>>();
-            let motion = Motion::of(&body.joint, self.ways(&body.joint, names)?, names)?;
+            let motion = Motion::of(&body.joint, &self.ways(&body.joint, names)?, names)?;
             all.extend(constant_rotation(&body.joint, names)?);
             all.extend(match motion.turn {
                 Some(turn) => product(&defined(0), &turn),
@@ -260,7 +260,7 @@ struct Motion {
 
 impl Motion {
     /// The movement of a joint whose coordinates are x.
-    fn of(joint: &Joint, x: Vec<Term>, names: &Names) -> Result<Motion, Unable> {
+    fn of(joint: &Joint, x: &[Term], names: &Names) -> Result<Motion, Unable> {
         let axis = |number: usize| -> Vec<Term> {
             let axis = joint.axes.get(number).copied().unwrap_or_default();
             let length = axis.iter().map(|part| part * part).sum::<f64>().sqrt();
@@ -286,7 +286,7 @@ impl Motion {
                 let slide = added(&along(&first, &x[0]), &along(&second, &x[1]));
                 (Some(slide), Some(about(&normal, &x[2])))
             }
-            JointKind::Spherical => (None, Some(by_quaternion(&x))),
+            JointKind::Spherical => (None, Some(by_quaternion(x))),
             JointKind::Free => (Some(x[..3].to_vec()), Some(by_quaternion(&x[3..]))),
         };
         Ok(Motion { slide, turn })
