@@ -1131,9 +1131,9 @@ pc_status pc_model_set_joint_pitch(pc_model *model,
                                    pc_error **error);
 
 /**
- * Gears a joint with one coordinate to that of the body `followed`: its coordinate is `ratio` times
- * the other's plus `offset`; null stands for 1 and for 0. It has no quasi-velocity of its own; the
- * name of its coordinate is that of a definition and of an output.
+ * Gears a joint with one coordinate to that of the body `followed`: its coordinate is `ratio`
+ * times the other's plus `offset`; null stands for 1 and for 0. It has no quasi-velocity of its
+ * own; the name of its coordinate is that of a definition and of an output.
  */
 pc_status pc_model_set_joint_gear(pc_model *model,
                                   const char *body,

@@ -133,9 +133,9 @@ pub unsafe extern "C" fn pc_model_set_joint_pitch(
     unsafe { draft(model, error, "pc_model_set_joint_pitch", write) }
 }
 
-/// Gears a joint with one coordinate to that of the body `followed`: its coordinate is `ratio` times
-/// the other's plus `offset`; null stands for 1 and for 0. It has no quasi-velocity of its own; the
-/// name of its coordinate is that of a definition and of an output.
+/// Gears a joint with one coordinate to that of the body `followed`: its coordinate is `ratio`
+/// times the other's plus `offset`; null stands for 1 and for 0. It has no quasi-velocity of its
+/// own; the name of its coordinate is that of a definition and of an output.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_joint_gear(
     model: *mut pc_model,
