@@ -12,7 +12,8 @@ use crate::tree::tree::Stand;
 /// The force and the moment that a joint exerts on its body, in terms of (t, x, η, η̇).
 ///
 /// Force and moment are along the axes of the body, and the moment is about its origin. Their components in
-/// the free directions of the joint are the generalised forces on the joint.
+/// the free directions of a joint that moves by itself are the generalised forces on it, less what accelerates its
+/// armature.
 #[derive(Clone, Debug)]
 pub struct JointReaction<'g> {
     pub(crate) body: String,
