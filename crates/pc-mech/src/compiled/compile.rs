@@ -42,23 +42,18 @@ impl<'g> Equations<'g> {
     pub fn compile_for(&self, options: impl Into<CompileOptions>) -> Result<Motion, MechError> {
         let options = options.into();
         let graph = self.system.graph().page(self.system.graph().folding());
-        let Some(tree) = &self.system.tree else {
+        if self.system.tree.is_none() {
             if let Some(carried) = self.carried_in(&graph, options.elimination)? {
                 return carried.compile(&options, LONGEST_ELIMINATION);
             }
             return self.first_order().compile(&options, LONGEST_ELIMINATION);
-        };
+        }
         let equations = self.system.in_graph(&graph).poincare()?;
         let first_order = equations.shortest_first_order(options.elimination);
         if let Some(tree) = &first_order.tree {
             tree.check_regular(&first_order.names)?;
         }
-        let mut motion = first_order.compile(&options, LONGEST_ELIMINATION)?;
-        // The equations of a large tree are not written out.
-        if first_order.tree.is_some() && !tree.is_large() && equations.has_pieces() {
-            motion.switches = equations.first_order().switches(&options)?.map(Box::new);
-        }
-        Ok(motion)
+        first_order.compile(&options, LONGEST_ELIMINATION)
     }
 
     /// The first-order system of bodies that carry one another, in another graph, where it takes fewer operations;
@@ -99,7 +94,7 @@ impl FirstOrder<'_> {
     /// As for [`Equations::compile`].
     pub(crate) fn compile(&self, options: &CompileOptions, longest: usize) -> Result<Motion, MechError> {
         let motion = self.compile_piece(options, longest)?;
-        let switches = if self.tree.is_none() { self.switches(options)? } else { None };
+        let switches = self.switches(options)?;
         Ok(Motion { switches: switches.map(Box::new), ..motion })
     }
 

@@ -153,6 +153,41 @@ impl<'g> FirstOrder<'g> {
         self.right.iter().enumerate().map(|(s, &right)| right - left(s)).collect()
     }
 
+    /// The expressions of which the equations consist: M, r, the forces of a tree, g and p.
+    pub(crate) fn terms(&self) -> Vec<Expr<'g>> {
+        let of_tree = self.tree.iter().flat_map(|tree| tree.dynamics.forces());
+        let left = self.implicit.iter().flat_map(|implicit| implicit.left.iter().copied());
+        let own = self.right.iter().chain(&self.rates).copied();
+        self.mass.nonzero_entries().into_iter().chain(of_tree).chain(own).chain(left).collect()
+    }
+
+    /// The system with others in place of its [`terms`](FirstOrder::terms).
+    pub(crate) fn with_terms(&self, terms: &[Expr<'g>]) -> FirstOrder<'g> {
+        let (mass, mut rest) = terms.split_at(self.mass.nonzero_entries().len());
+        let mut take = |count: usize| {
+            let (taken, left) = rest.split_at(count);
+            rest = left;
+            taken.to_vec()
+        };
+        let tree = self.tree.as_ref().map(|tree| {
+            let forces = take(tree.dynamics.forces().len());
+            let dynamics = tree.dynamics.clone().with_forces(&forces);
+            Rc::new(TreeEquations { dynamics, system: tree.system.clone() })
+        });
+        let (right, rates) = (take(self.right.len()), take(self.rates.len()));
+        let left = self.implicit.as_ref().map_or(0, |implicit| implicit.left.len());
+        let left = take(left);
+        let implicit = self.implicit.clone().map(|implicit| Implicit { left, ..implicit });
+        FirstOrder {
+            mass: self.mass.with_nonzero_entries(mass),
+            tree,
+            right,
+            rates,
+            implicit,
+            ..self.clone()
+        }
+    }
+
     /// The nonzero entries of each row of ∂g/∂w with their columns.
     pub(crate) fn coupling(&self) -> Vec<SparseColumn<'g>> {
         self.graph.jacobian(&self.rates, &self.unknowns)

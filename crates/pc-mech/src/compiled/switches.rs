@@ -29,21 +29,9 @@ impl<'g> FirstOrder<'g> {
     /// # Errors
     /// As for [`Program::new`].
     pub(crate) fn switches(&self, options: &CompileOptions) -> Result<Option<Switches>, MechError> {
-        let masses = self.mass.nonzero_entries();
-        let left = self.implicit.iter().flat_map(|implicit| &implicit.left).copied();
-        let values: Vec<Expr<'g>> =
-            masses.iter().chain(&self.right).chain(&self.rates).copied().chain(left).collect();
-        let held = self.graph.held(&values, &self.passing());
+        let held = self.graph.held(&self.terms(), &self.passing());
         if held.surfaces.is_empty() || held.surfaces.len() > MOST {
             return Ok(None);
-        }
-        let mass = self.mass.with_nonzero_entries(&held.values[..masses.len()]);
-        let mut rest = held.values[masses.len()..].iter().copied();
-        let right = rest.by_ref().take(self.right.len()).collect();
-        let rates = rest.by_ref().take(self.rates.len()).collect();
-        let mut implicit = self.implicit.clone();
-        if let Some(implicit) = &mut implicit {
-            implicit.left = rest.collect();
         }
         let sides = held.surfaces.iter().map(|surface| surface.side);
         let system = FirstOrder {
@@ -54,13 +42,9 @@ impl<'g> FirstOrder<'g> {
                 .chain(sides.clone().map(|side| (side, 1.0)))
                 .collect(),
             varying: self.varying.iter().copied().chain(sides).collect(),
-            mass,
-            right,
-            rates,
-            implicit,
             observables: Vec::new(),
             conserved: 0,
-            ..self.clone()
+            ..self.with_terms(&held.values)
         };
         let mut functions: Vec<Expr<'g>> = held.surfaces.iter().map(|surface| surface.function).collect();
         let names = written_out(self.graph, &held.surfaces);
@@ -127,33 +111,14 @@ impl<'g> FirstOrder<'g> {
             own.push((surface.side, function.step(1.0, -1.0)));
         }
         let observed = graph.substitute(&held.values, &own);
-        let masses = system.mass.nonzero_entries();
-        let left = system.implicit.iter().flat_map(|implicit| &implicit.left).copied();
-        let all: Vec<Expr<'g>> = masses
-            .iter()
-            .chain(&system.right)
-            .chain(&system.rates)
-            .copied()
-            .chain(left)
-            .chain(observed)
-            .collect();
-        let mut all = graph.blended(&all, &sides).into_iter();
-        let mass = all.by_ref().take(masses.len()).collect::<Vec<_>>();
-        let right = all.by_ref().take(system.right.len()).collect();
-        let rates = all.by_ref().take(system.rates.len()).collect();
-        let mut implicit = system.implicit.clone();
-        if let Some(implicit) = &mut implicit {
-            implicit.left = all.by_ref().take(implicit.left.len()).collect();
-        }
+        let terms = system.terms();
+        let (terms_len, all) = (terms.len(), [terms, observed].concat());
+        let all = graph.blended(&all, &sides);
         let names = self.observables.iter().map(|(name, _)| name.clone());
         let between = FirstOrder {
-            mass: system.mass.with_nonzero_entries(&mass),
-            right,
-            rates,
-            implicit,
-            observables: names.zip(all).collect(),
+            observables: names.zip(all[terms_len..].iter().copied()).collect(),
             conserved: self.conserved,
-            ..system.clone()
+            ..system.with_terms(&all[..terms_len])
         };
         let plain = CompileOptions::default().backend(options.backend).jacobian(false);
         Ok(Some(between.compile_piece(&plain, LONGEST_ELIMINATION)?))

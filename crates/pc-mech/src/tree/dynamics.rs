@@ -107,6 +107,23 @@ impl<'g> TreeDynamics<'g> {
         }
     }
 
+    /// Gravity, then the components of τ: all that is not made of masses and positions.
+    pub(crate) fn forces(&self) -> Vec<Expr<'g>> {
+        self.gravity.iter().chain(self.applied.iter().flatten()).copied().collect()
+    }
+
+    /// The equations with others in place of the [`forces`](TreeDynamics::forces).
+    pub(crate) fn with_forces(self, forces: &[Expr<'g>]) -> TreeDynamics<'g> {
+        let (gravity, mut rest) = forces.split_at(3);
+        let mut take = |own: &Vec<Expr<'g>>| {
+            let (taken, left) = rest.split_at(own.len());
+            rest = left;
+            taken.to_vec()
+        };
+        let applied = self.applied.iter().map(&mut take).collect();
+        TreeDynamics { gravity: std::array::from_fn(|i| gravity[i]), applied, ..self }
+    }
+
     /// The accelerations η̇, link by link.
     pub(crate) fn accelerations(&self) -> Vec<Vec<Expr<'g>>> {
         let (motions, dropped) = self.motions(None);
