@@ -222,6 +222,11 @@ impl<'g> Equations<'g> {
         self.shortest_first_order(if is_large { TreeElimination::ByJoints } else { TreeElimination::Whole })
     }
 
+    /// One new symbol for each of `symbols`, with `mark` prefixed to its name.
+    pub(crate) fn new_symbols(&self, mark: &str, symbols: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        self.written_first_order().fresh(mark, symbols)
+    }
+
     /// Inverse dynamics: the k generalised forces M η̇ − r that have to be added to Q to obtain the
     /// accelerations η̇, whose [symbols](crate::System::accelerations) they contain. For a large tree the
     /// forces are computed body by body, in O(N) operations.

@@ -536,6 +536,45 @@ fn inverse_dynamics_inverts_forward_dynamics() {
     });
 }
 
+/// τ is linear in η̇ with the matrix M, which is symmetric; it vanishes for the motion, and
+/// what holds the system is τ at rest.
+#[test]
+fn forces_of_motions_are_linear_in_accelerations() {
+    let check = |bodies: &[Hung], numbers: &[f64]| {
+        let graph = Graph::new();
+        let system = hung(&graph, bodies, true);
+        let equations = system.poincare().unwrap();
+        let y = state(bodies, numbers);
+        let (n, k) = (system.frame().coordinates().len(), system.quasi_velocities().len());
+        let mut dynamics = equations.inverse_dynamics_of_motion().unwrap();
+        let mut mass = vec![0.0; k * k];
+        dynamics.mass_matrix(0.0, &y, &mut mass).unwrap();
+        let largest = mass.iter().fold(0.0f64, |largest, entry| largest.max(entry.abs()));
+        for (r, s) in (0..k).flat_map(|r| (0..r).map(move |s| (r, s))) {
+            assert!((mass[r * k + s] - mass[s * k + r]).abs() < 1e-13 * largest, "{mass:?}");
+        }
+        let (mut forces, mut bias) = (vec![0.0; k], vec![0.0; k]);
+        let accelerations: Vec<f64> = numbers[..k].iter().map(|a| 3.0 * a).collect();
+        dynamics.forces(0.0, &y, &accelerations, &mut forces).unwrap();
+        dynamics.bias(0.0, &y, &mut bias).unwrap();
+        let product = |s: usize| (0..k).map(|r| mass[r * k + s] * accelerations[r]).sum::<f64>();
+        let sums: Vec<f64> = (0..k).map(|s| bias[s] + product(s)).collect();
+        assert!(difference(&forces, &sums) < 1e-12, "{forces:?} {sums:?}");
+        let motion = equations.compile_for(CompileOptions::default().jacobian(false));
+        let rates = motion.unwrap().rates(0.0, &y).unwrap();
+        dynamics.forces(0.0, &y, &rates[n..], &mut bias).unwrap();
+        let size = forces.iter().fold(1.0f64, |size, force| size.max(force.abs()));
+        assert!(bias.iter().all(|left| left.abs() < 1e-10 * size), "{bias:?} of {size}");
+        let mut at_rest = y.clone();
+        at_rest[n..].fill(0.0);
+        dynamics.holding(0.0, &y, &mut forces).unwrap();
+        dynamics.bias(0.0, &at_rest, &mut bias).unwrap();
+        assert_eq!(forces, bias);
+    };
+    trees(6, 3, check);
+    geared(8, 7, check);
+}
+
 #[test]
 fn a_free_tree_keeps_its_momenta_and_its_energy() {
     trees(16, 5, |bodies, numbers| {

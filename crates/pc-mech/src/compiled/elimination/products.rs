@@ -1,4 +1,4 @@
-//! The Jacobian of a large tree: its products with unit vectors, eight at a time.
+//! The Jacobian of a large tree, and its mass matrix: their products with unit vectors, eight at a time.
 //!
 //! With the whole mass matrix, the entry ∂η̇_r/∂y_j of each pair is a long expression. The product (∂ẏ/∂y) v is
 //! short: forward sweeps of the velocities, accelerations and forces that v changes at fixed η̇, and one solution
@@ -20,7 +20,7 @@ use crate::compiled::elimination::columns::Storage;
 use crate::compiled::failure::EvaluationFailure;
 use crate::compiled::point::Point;
 
-/// The columns of ∂ẏ/∂y as products.
+/// The columns of ∂ẏ/∂y, or of another matrix, as products.
 #[derive(Clone, Debug)]
 pub(crate) struct Products {
     pattern: Pattern,
@@ -51,7 +51,7 @@ struct Kernels {
 }
 
 impl Products {
-    /// The Jacobian with the products `values`, which are linear functions of `v`, and functions of the `inputs` and of
+    /// The matrix with the products `values`, which are linear functions of `v`, and functions of the `inputs` and of
     /// the symbols of accelerations, given with their values.
     ///
     /// # Errors
@@ -100,23 +100,24 @@ impl Products {
     ) -> Result<(), EvaluationFailure> {
         self.approach(at);
         let Some(kernels) = self.kernels.get() else { return Err(self.parts.blame(at)) };
-        let (dim, frame) = (at.y.len(), &mut self.frames[1]);
+        let (width, height) = (self.parts.product.state_len(), self.parts.product.outputs_len());
+        let frame = &mut self.frames[1];
         let is_dense = storage == Storage::Dense;
         if is_dense {
             entries.fill(0.0);
         }
         let mut is_finite = true;
         for directions in self.directions.chunks(LANES) {
-            frame[..dim].fill(Lanes::splat(0.0));
+            frame[..width].fill(Lanes::splat(0.0));
             for (lane, columns) in directions.iter().enumerate() {
                 columns.iter().for_each(|&column| frame[column].0[lane] = 1.0);
             }
             kernels.product.run(frame);
-            let products = &frame[kernels.product.first_output()..][..dim];
+            let products = &frame[kernels.product.first_output()..][..height];
             for (lane, columns) in directions.iter().enumerate() {
                 for &column in columns {
                     let rows = self.pattern.column(column);
-                    let start = if is_dense { column * dim } else { self.pattern.column_starts()[column] };
+                    let start = if is_dense { column * height } else { self.pattern.column_starts()[column] };
                     for (place, &row) in rows.iter().enumerate() {
                         let value = products[row].0[lane];
                         is_finite &= value.is_finite();
@@ -156,12 +157,13 @@ impl Products {
         self.prepare();
         let Some(kernels) = self.kernels.get() else { return };
         let [known, frame] = &mut self.frames;
-        let (dim, given) = (at.y.len(), 1 + at.y.len() + at.p.len());
+        let (width, given) = (self.parts.product.state_len(), 1 + at.y.len() + at.p.len());
         let time = [at.t];
         let values = [&time, at.y, at.p].into_iter().flatten();
         known.iter_mut().zip(values).for_each(|(row, &value)| *row = Lanes::splat(value));
         kernels.known.run(known);
-        let (of_point, of_known) = frame[dim..dim + self.parts.product.parameters_len()].split_at_mut(given);
+        let (of_point, of_known) =
+            frame[width..width + self.parts.product.parameters_len()].split_at_mut(given);
         of_point.copy_from_slice(&known[..given]);
         of_known.copy_from_slice(&known[kernels.known.first_output()..][..of_known.len()]);
     }
@@ -213,8 +215,8 @@ impl Parts {
             parameters.extend(computed);
         }
         let product = interpreted(&self.product);
-        let mut v = vec![0.0; y.len()];
-        for column in 0..y.len() {
+        let mut v = vec![0.0; self.product.state_len()];
+        for column in 0..v.len() {
             v[column] = 1.0;
             if let Some(error) = product.diagnose(0.0, &v, &parameters) {
                 return EvaluationFailure::Expr(error);
