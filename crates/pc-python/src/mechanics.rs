@@ -1,32 +1,29 @@
 //! Parts of the equations as functions of the state.
 
 use pc_expr::Evaluator;
-use pc_mech::{LegendreTransform, MechError};
+use pc_mech::{InverseDynamics, LegendreTransform, MechError};
 use pc_model::{Model, Variables};
 use pc_print::bracket_of;
 
 use crate::error::Error;
 
-/// The mass matrix M of a system, which is derived on the first request.
-pub(crate) struct MassMatrix {
-    /// M as a function of (t, x, η), row by row.
-    pub(crate) entries: Evaluator,
+/// Inverse dynamics and mass matrix of a system, which are derived on the first request.
+pub(crate) struct Dynamics {
+    pub(crate) inverse: InverseDynamics,
     /// From momenta to quasi-velocities, where the state has momenta.
     pub(crate) transform: Option<LegendreTransform>,
-    /// Number of quasi-velocities of the state.
-    pub(crate) size: usize,
 }
 
-impl MassMatrix {
-    pub(crate) fn of(model: &Model, variables: Variables) -> Result<MassMatrix, Error> {
+impl Dynamics {
+    pub(crate) fn of(model: &Model, variables: Variables) -> Result<Dynamics, Error> {
         model.derived(|assembly| {
             let equations = assembly.equations_in(variables)?;
-            let entries = assembly.placed(equations.functions(&equations.mass_matrix().entries(), &[]))?;
+            let inverse = assembly.placed(equations.inverse_dynamics_of_motion())?;
             let transform = match variables.has_momenta() {
                 true => Some(assembly.legendre_transform(variables)?),
                 false => None,
             };
-            Ok(MassMatrix { entries, transform, size: equations.mass_matrix().rows() })
+            Ok(Dynamics { inverse, transform })
         })
     }
 }

@@ -9,7 +9,7 @@ use pc_verify::Outlet;
 use pyo3::prelude::*;
 
 use crate::error::Error;
-use crate::mechanics::MassMatrix;
+use crate::mechanics::Dynamics;
 use crate::model::{ModelCore, finite, renewed, variables, vouched};
 use crate::task::attended;
 
@@ -24,7 +24,7 @@ pub(crate) struct SystemCore {
     setting: Mutex<()>,
     /// Flows for calls that take a long time, each with the version of its values.
     spare: Mutex<Vec<(u64, Flow)>>,
-    pub(crate) mass: Mutex<Option<MassMatrix>>,
+    pub(crate) dynamics: Mutex<Option<Dynamics>>,
     /// Whether a motion has been compared with a second derivation.
     pub(crate) verified: AtomicBool,
 }
@@ -130,7 +130,7 @@ impl SystemCore {
             state: Mutex::new(state),
             setting: Mutex::new(()),
             spare: Mutex::new(Vec::new()),
-            mass: Mutex::new(None),
+            dynamics: Mutex::new(None),
             verified: AtomicBool::new(false),
         })
     }

@@ -1,6 +1,7 @@
 //! The parts of the equations: mass matrix, structure coefficients, residual.
 
-use pc_mech::{EvaluationError, MassFactors, MechError, SingularMatrix, VectorField};
+use ::pc_model::Model;
+use pc_mech::{EvaluationError, InverseDynamics, MassFactors, MechError, SingularMatrix, VectorField};
 
 use crate::api::rates::{State, Target, slices};
 use crate::ffi::call_error::CallError;
@@ -96,6 +97,61 @@ pub unsafe extern "C" fn pc_system_right_hand_side(
         let (values, state) = room.split(dim);
         evaluate(&mut mechanics.right, (t, state, motion.inputs(t, y)?), values)?;
         right.copy_from_slice(&values[n..n + k]);
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, compute) }
+}
+
+/// Writes the generalised forces tau = M η̇ + h - Q that have to be added to the forces Q of the model
+/// for the accelerations η̇ at (t, y): inverse dynamics. Both lists have k numbers, with k as in
+/// pc_system_mass_matrix; null accelerations stand for zeros, so that tau is what the motion itself
+/// requires, and in a state at rest what holds the system there. For bodies on joints tau is found
+/// from body to body. The first call derives equations, as pc_system_new does.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_system_inverse_dynamics(
+    system: *const pc_system,
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    accelerations: *const f64,
+    accelerations_length: usize,
+    tau: *mut f64,
+    tau_length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let compute = |inventory: &Inventory, inner: &mut Inner| {
+        let (dim, k) = (inventory.dim(), inner.field.quasi_velocities());
+        let given = !accelerations.is_null();
+        if given && accelerations_length == k && tau_length == k {
+            apart((accelerations, k, "accelerations"), (tau, k, "tau"))?;
+        }
+        let accelerations = match given {
+            // SAFETY: as the preamble demands; tau shares no memory with it.
+            true => Some(unsafe { numbers(accelerations, accelerations_length, k, "accelerations") }?),
+            false => None,
+        };
+        let target = Target { data: tau, length: tau_length, expected: k, what: "tau" };
+        // SAFETY: as the preamble demands.
+        let (y, tau) = unsafe { slices(State { y, length: y_length }, dim, target) }?;
+        inner.read_quasi_velocities(inventory, t, y)?;
+        if inner.inverse.is_none() {
+            let derive = |model: Model| -> Result<InverseDynamics, CallError> {
+                let graph = model.graph();
+                let assembly = model.assemble(&graph)?;
+                let equations = assembly.equations_in(inventory.variables)?;
+                Ok(assembly.placed(equations.inverse_dynamics_of_motion())?)
+            };
+            inner.inverse = Some(inventory.derive(derive)?);
+        }
+        let Inner { inverse, field, room, .. } = inner;
+        const MISSING: CallError = CallError::Unsupported { what: "M η̇ + h", why: "it was not derived" };
+        let inverse = inverse.as_mut().ok_or(MISSING)?;
+        inverse.parameters_mut().copy_from_slice(field.inputs(t, y)?);
+        match accelerations {
+            Some(accelerations) => inverse.forces(t, &room.state, accelerations, tau)?,
+            None => inverse.bias(t, &room.state, tau)?,
+        }
         Ok(())
     };
     // SAFETY: as the preamble demands.

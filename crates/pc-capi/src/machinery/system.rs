@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use ::pc_model::{Flow, FlowEvents, Model, Parameters, Variables, deep};
 use pc_expr::{Deadline, Event, Events, Pattern, TimeDependence};
-use pc_mech::{LegendreTransform, MassFactors, Motion, VectorField};
+use pc_mech::{InverseDynamics, LegendreTransform, MassFactors, Motion, VectorField};
 
 use crate::ffi::boundary::entry;
 use crate::ffi::call_error::CallError;
@@ -85,6 +85,7 @@ pub(crate) struct Inner {
     pub(crate) events: FlowEvents,
     /// Derived on first use.
     pub(crate) mechanics: Option<Mechanics>,
+    pub(crate) inverse: Option<InverseDynamics>,
     pub(crate) legendre: Option<LegendreTransform>,
     /// The motion with ∂f/∂t, or nothing if f does not contain time.
     by_time: Option<Option<Box<Motion>>>,
@@ -164,6 +165,7 @@ impl pc_system {
             kept_at,
             events,
             mechanics: None,
+            inverse: None,
             legendre: None,
             by_time: None,
             factors: None,

@@ -53,22 +53,31 @@ impl Equations<'_> {
     /// [`ExprError::UnboundSymbol`](crate::ExprError::UnboundSymbol) for a symbol that is neither state nor
     /// declared parameter.
     pub fn inverse_dynamics_of_motion(&self) -> Result<InverseDynamics, MechError> {
-        let graph = self.system().graph().page(self.system().graph().folding());
-        let equations = self.system().in_graph(&graph).poincare()?;
-        let system = equations.system();
+        let system = self.system();
+        match system.tree() {
+            Some(_) => {
+                let graph = system.graph().page(system.graph().folding());
+                system.in_graph(&graph).poincare()?.compiled_inverse()
+            }
+            None => self.compiled_inverse(),
+        }
+    }
+
+    fn compiled_inverse(&self) -> Result<InverseDynamics, MechError> {
+        let (system, graph) = (self.system(), self.system().graph());
         let (state, accelerations) = (system.state(), system.accelerations());
-        let forces = equations.inverse_dynamics();
+        let forces = self.inverse_dynamics();
         let (parameters, values): (Vec<Expr<'_>>, Vec<f64>) = system.run_time_inputs().into_iter().unzip();
         let inputs = Inputs { time: Some(system.frame().time()), state, parameters };
         let with_accelerations =
             Inputs { state: [&inputs.state[..], &accelerations].concat(), ..inputs.clone() };
-        let v = equations.new_symbols("δ", &accelerations);
+        let v = self.new_symbols("δ", &accelerations);
         let along: Vec<_> = accelerations.iter().copied().zip(v.iter().copied()).collect();
         let products = graph.directional(&forces, &along);
         let zeros = vec![Expr::ZERO; accelerations.len()];
         Ok(InverseDynamics {
-            forces: Evaluator::new(Program::new(&graph, &with_accelerations, &forces)?, Backend::default()),
-            mass: Products::new(&graph, &inputs, (&accelerations, &zeros), (&v, &products))?,
+            forces: Evaluator::new(Program::new(graph, &with_accelerations, &forces)?, Backend::default()),
+            mass: Products::new(graph, &inputs, (&accelerations, &zeros), (&v, &products))?,
             names: inputs.state.iter().map(Expr::to_string).collect(),
             coordinates: system.frame().coordinates().len(),
             quasi_velocities: system.quasi_velocities().iter().map(Expr::to_string).collect(),

@@ -160,6 +160,37 @@ class System(_native.System):
         size, entries = self._mass_entries(float(t), np.asarray(y, dtype=float).tolist())
         return np.array(entries).reshape(size, size)
 
+    def inverse_dynamics(self, t: float, y: npt.ArrayLike, accelerations: npt.ArrayLike) -> Floats:
+        """The generalised forces that have to be added to those of the model for these accelerations of the quasi-velocities.
+
+        M η̇ + h - Q, for bodies on joints from body to body (recursive Newton-Euler).
+
+        Examples
+        --------
+        >>> from chetaev import Model
+        >>> system = Model.builtin("furuta-pendulum").system()
+        >>> rates = system.rhs(0.0, system.y0)
+        >>> forces = system.inverse_dynamics(0.0, system.y0, rates[2:])
+        >>> bool(abs(forces).max() < 1e-12)
+        True
+        """
+        import numpy as np
+
+        given = np.asarray(accelerations, dtype=float).tolist()
+        return np.array(self._inverse_dynamics(float(t), np.asarray(y, dtype=float).tolist(), given, False))
+
+    def bias(self, t: float, y: npt.ArrayLike) -> Floats:
+        """The forces that the motion at a state requires for vanishing accelerations: h - Q of M η̇ + h = Q."""
+        import numpy as np
+
+        return np.array(self._inverse_dynamics(float(t), np.asarray(y, dtype=float).tolist(), None, False))
+
+    def gravity_compensation(self, t: float, y: npt.ArrayLike) -> Floats:
+        """The forces that hold the system at rest where it is, against weight, springs and constant forces."""
+        import numpy as np
+
+        return np.array(self._inverse_dynamics(float(t), np.asarray(y, dtype=float).tolist(), None, True))
+
     def reactions(self, t: npt.ArrayLike, y: npt.ArrayLike) -> dict[str, Any]:
         """The reaction of each constraint, by its name.
 
