@@ -264,6 +264,12 @@ public:
     {
         return at(pc_system_solve_mass_matrix, dim() - coordinate_count() - state_count(), t, y, v.data(), v.size());
     }
+    /// The forces that have to be added for accelerations of the quasi-velocities.
+    vector inverse_dynamics(double t, view<const double> y, view<const double> accelerations)
+    {
+        return at(pc_system_inverse_dynamics, dim() - coordinate_count() - state_count(), t, y,
+                  accelerations.data(), accelerations.size());
+    }
     /// r of M η̇ = r
     vector right_hand_side(double t, view<const double> y)
     {

@@ -259,6 +259,37 @@ fn the_residual_vanishes_on_the_rates_and_grows_by_the_mass_matrix() {
     }
 }
 
+/// The second part of the residual, and its value at rest.
+#[test]
+fn inverse_dynamics_is_the_residual_of_accelerations() {
+    for name in MODELS {
+        let system = System::of(name);
+        let ((t, y), dim) = (system.start(), system.dim());
+        // SAFETY: a live system.
+        let n = unsafe { pc_system_coordinate_count(system.0.as_ref()) };
+        let k = dim - n;
+        let forces = |accelerations: Option<&[f64]>| {
+            let mut tau = vec![f64::NAN; k];
+            let (y, out) = (y.as_ptr(), tau.as_mut_ptr());
+            let (given, count) = accelerations.map_or((std::ptr::null(), 0), |a| (a.as_ptr(), a.len()));
+            // SAFETY: a live system and arrays as said.
+            call(|error| unsafe {
+                pc_system_inverse_dynamics(system.0, t, y, dim, given, count, out, k, error)
+            })
+            .map(|()| tau)
+        };
+        let rates = system.at(pc_system_rhs, t, &y, dim).unwrap();
+        let of_motion = forces(Some(&rates[n..])).unwrap();
+        // Rounding, as above.
+        assert!(of_motion.iter().all(|force| force.abs() < 1e-12), "{name}: {of_motion:?}");
+        let right = system.at(pc_system_right_hand_side, t, &y, k).unwrap();
+        let bias = forces(None).unwrap();
+        assert!(right.iter().zip(&bias).all(|(r, b)| (r + b).abs() < 1e-12), "{name}: {right:?} {bias:?}");
+        let wrong = forces(Some(&rates[n..n + k - 1])).unwrap_err();
+        assert_eq!(wrong.status, PC_INVALID_ARGUMENT, "{name}");
+    }
+}
+
 #[test]
 fn reactions_are_observed_on_request() {
     let model = Model::named("chaplygin-sleigh");

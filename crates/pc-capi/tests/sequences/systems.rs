@@ -167,7 +167,7 @@ impl Handles {
             let velocities =
                 dim - pc_system_coordinate_count(system.as_ref()) - pc_system_state_count(system.as_ref());
             let [of_v, of_w] = [v_length, length].map(|length| length.min(velocities));
-            self.call(|error| match function % 12 {
+            self.call(|error| match function % 13 {
                 0 => pc_system_project(system, t, y, y_length, error),
                 1 => pc_system_keep_from(system, t, y, y_length, error),
                 2 => pc_system_event_reset(system, index, t, y, y_length, error),
@@ -179,6 +179,7 @@ impl Handles {
                 10 => pc_system_verify_at(system, t, y, y_length, ptr::null_mut(), error),
                 7 => pc_system_start_by_parameter(system, index, out, length, error),
                 8 => pc_system_absolute_tolerances(system, t, t + 1.0, out, length, error),
+                11 => pc_system_inverse_dynamics(system, t, y, y_length, v, of_v, out, of_w, error),
                 9 => pc_system_solve_mass_matrix(system, t, y, y_length, v, of_v, out, of_w, error),
                 _ => pc_system_residual(system, t, y, y_length, v, v_length, out, length, error),
             })
