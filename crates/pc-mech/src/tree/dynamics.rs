@@ -16,7 +16,8 @@
 
 use pc_expr::{Expr, Graph};
 
-use crate::tree::articulated::{Articulated, Spatial, force_seen, joined};
+use crate::tree::articulated::Articulated;
+use crate::tree::inertia6::{Spatial, force_seen, joined};
 use crate::tree::link::Link;
 use crate::tree::spatial::{Tensor, Vector, ZERO, cross, tensor, vector};
 use crate::tree::tree::{MassOnLink, Tree};

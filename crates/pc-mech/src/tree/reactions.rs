@@ -3,8 +3,8 @@
 use pc_expr::Expr;
 
 use crate::system::system::System;
-use crate::tree::articulated::{Spatial, force_seen, moving_part, turning_part};
 use crate::tree::body::TreeBody;
+use crate::tree::inertia6::{Spatial, force_seen, moving_part, turning_part};
 use crate::tree::spatial::{apply, apply_transpose, cross, vector};
 use crate::tree::system::TreeSystem;
 use crate::tree::tree::Stand;

@@ -7,8 +7,8 @@ use pc_algebra::{Matrix, determinant, inverse};
 use pc_expr::{Expr, Graph};
 
 use crate::points::equations::PointEquations;
-use crate::tree::articulated::Pivot;
 use crate::tree::equations::TreeEquations;
+use crate::tree::open_couplings::Pivot;
 
 /// The inverse of a symmetric matrix in the form in which it is applied. Zeros of the matrix cost nothing.
 pub(crate) enum Factors<'g> {
