@@ -62,7 +62,7 @@ pub enum TreeError {
         /// The body whose joint is followed.
         followed: String,
     },
-    /// A spring, damping or armature of a joint that has not exactly one coordinate.
+    /// A spring, damping, friction or armature of a joint that has not exactly one coordinate.
     #[error(
         "the joint of `{body}` cannot have the {what} given to it: it does not have exactly one coordinate"
     )]

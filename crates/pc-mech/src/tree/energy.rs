@@ -29,12 +29,14 @@ impl<'g> Tree<'g> {
         self.drives().filter_map(energy)
     }
 
-    /// The forces of the dampers on the quasi-velocities `eta`: −d ẋ ∂ẋ/∂η_s.
+    /// The forces of dampers and friction on the quasi-velocities `eta`: −(d ẋ + F sign ẋ) ∂ẋ/∂η_s.
     pub(crate) fn dampers(&self, eta: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let mut forces = vec![Expr::ZERO; eta.len()];
-        for (drive, _, rate) in self.drives().filter(|(drive, ..)| !drive.damping.is_zero()) {
+        let is_resisted = |drive: &Drive<'g>| !(drive.damping.is_zero() && drive.friction.is_zero());
+        for (drive, _, rate) in self.drives().filter(|(drive, ..)| is_resisted(drive)) {
+            let resisting = drive.damping * rate + drive.friction * rate.sign();
             for (force, ratio) in forces.iter_mut().zip(self.graph.gradient(rate, eta)) {
-                *force -= drive.damping * rate * ratio;
+                *force -= resisting * ratio;
             }
         }
         forces

@@ -36,7 +36,7 @@ pub struct Joint<'g> {
     pub(crate) drive: Drive<'g>,
 }
 
-/// The drive of a joint with the coordinate x: a rotor, a spring and a damper.
+/// The drive of a joint with the coordinate x: a rotor, a spring, a damper and dry friction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Drive<'g> {
     /// The inertia J of ½ J x'².
@@ -45,10 +45,13 @@ pub(crate) struct Drive<'g> {
     pub(crate) spring: Option<(Expr<'g>, Expr<'g>)>,
     /// The coefficient d of the force −d x'.
     pub(crate) damping: Expr<'g>,
+    /// The size F of Coulomb's force −F sign x'.
+    pub(crate) friction: Expr<'g>,
 }
 
 impl<'g> Drive<'g> {
-    const NONE: Drive<'static> = Drive { armature: Expr::ZERO, spring: None, damping: Expr::ZERO };
+    const NONE: Drive<'static> =
+        Drive { armature: Expr::ZERO, spring: None, damping: Expr::ZERO, friction: Expr::ZERO };
 
     /// Its first part, named, if it has any.
     pub(crate) fn part(&self) -> Option<&'static str> {
@@ -56,6 +59,7 @@ impl<'g> Drive<'g> {
             Drive { armature, .. } if !armature.is_zero() => Some("armature"),
             Drive { spring: Some(_), .. } => Some("spring"),
             Drive { damping, .. } if !damping.is_zero() => Some("damping"),
+            Drive { friction, .. } if !friction.is_zero() => Some("friction"),
             _ => None,
         }
     }
@@ -65,6 +69,7 @@ impl<'g> Drive<'g> {
             armature: put(self.armature),
             spring: self.spring.map(|(stiffness, rest)| (put(stiffness), put(rest))),
             damping: put(self.damping),
+            friction: put(self.friction),
         }
     }
 }
@@ -207,6 +212,13 @@ impl<'g> Joint<'g> {
     #[must_use]
     pub fn damping(self, coefficient: impl Into<Expr<'g>>) -> Joint<'g> {
         Joint { drive: Drive { damping: coefficient.into(), ..self.drive }, ..self }
+    }
+
+    /// The same joint, revolute, prismatic or screw, with dry friction of constant size: the force −F sign x' on its
+    /// coordinate x. Where it is at rest, any force up to F holds it (Coulomb 1785).
+    #[must_use]
+    pub fn friction(self, size: impl Into<Expr<'g>>) -> Joint<'g> {
+        Joint { drive: Drive { friction: size.into(), ..self.drive }, ..self }
     }
 
     /// The joint with each expression replaced.

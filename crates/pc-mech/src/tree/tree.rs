@@ -78,7 +78,7 @@ impl<'g> Tree<'g> {
     /// # Errors
     /// [`TreeError`] for two bodies with the same name, a parent that does not exist, parents in a circle, an
     /// axis without a direction, a list of names that does not fit its joint, or a joint without exactly one
-    /// coordinate that follows another or has an armature, a spring or a damping;
+    /// coordinate that follows another or has an armature, a spring, a damping or friction;
     /// [`BodyError`](crate::BodyError) for a matrix that is not a rotation.
     pub fn new(
         graph: &'g Graph,

@@ -64,7 +64,7 @@ pub struct Joint {
     pub drive: Drive,
 }
 
-/// The rotor, spring and damper of a joint with the coordinate x.
+/// The rotor, spring, damper and dry friction of a joint with the coordinate x.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drive {
     /// The inertia J of ½ J x'².
@@ -75,6 +75,8 @@ pub struct Drive {
     pub rest: Option<Expression>,
     /// The coefficient d of the force −d x'.
     pub damping: Option<Expression>,
+    /// The size F of the force −F sign x'.
+    pub friction: Option<Expression>,
 }
 
 /// How a joint with one coordinate is geared to that of another body: x = ratio · x of the other + offset.

@@ -29,9 +29,10 @@ const JOINT_KEYS: &[&str] = &[
     "stiffness",
     "rest",
     "damping",
+    "friction",
 ];
 /// The entries of joints with one coordinate.
-const OF_SINGLE: &[&str] = &["follows", "armature", "stiffness", "rest", "damping"];
+const OF_SINGLE: &[&str] = &["follows", "armature", "stiffness", "rest", "damping", "friction"];
 pub(super) const JOINT: &str = "joint = { kind = \"revolute\", axis = [0, 0, 1], at = [0, 0, 0] }";
 const AXIS: &str = "axis = [0, 0, 1]";
 const AXES: &str = "axes = [[1, 0, 0], [0, 1, 0]]";
@@ -132,13 +133,14 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
             "follows" => follows = Some(part),
             "ratio" => ratio = Some(part),
             "offset" => offset = Some(part),
-            "armature" | "stiffness" | "rest" | "damping" => {
+            "armature" | "stiffness" | "rest" | "damping" | "friction" => {
                 let value = Some(part.expression()?);
                 match part.key() {
                     "armature" => drive.armature = value,
                     "stiffness" => drive.stiffness = value,
                     "rest" => drive.rest = value,
-                    _ => drive.damping = value,
+                    "damping" => drive.damping = value,
+                    _ => drive.friction = value,
                 }
                 driven.push(part);
             }

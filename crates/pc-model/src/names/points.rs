@@ -101,9 +101,9 @@ impl<'g> Scope<'g, '_> {
         })
     }
 
-    /// The joint with its rotor, spring and damper.
+    /// The joint with its rotor, spring, damper and friction.
     fn driven(&mut self, joint: &document::Joint, made: Joint<'g>) -> Result<Joint<'g>, ModelError> {
-        let document::Drive { armature, stiffness, rest, damping } = &joint.drive;
+        let document::Drive { armature, stiffness, rest, damping, friction } = &joint.drive;
         let mut constant = |part: &Option<Expression>| -> Result<Option<Expr<'g>>, ModelError> {
             part.as_ref().map(|part| self.resolve(part, Stage::Joint)).transpose()
         };
@@ -116,6 +116,9 @@ impl<'g> Scope<'g, '_> {
         }
         if let Some(damping) = constant(damping)? {
             made = made.damping(damping);
+        }
+        if let Some(friction) = constant(friction)? {
+            made = made.friction(friction);
         }
         Ok(made)
     }

@@ -150,7 +150,9 @@ impl Text {
             forces: document
                 .forces
                 .iter()
-                .map(|force| Ok((forced(&names, &force.name.text)?, term(&force.expression)?)))
+                .map(|force| Ok((force.name.text.clone(), term(&force.expression)?)))
+                .chain(drives.friction.into_iter().map(Ok))
+                .map(|force| force.and_then(|(name, force)| Ok((forced(&names, &name)?, force))))
                 .collect::<Result<_, Unable>>()?,
             observed,
             deadline: model.budget().deadline().clone(),

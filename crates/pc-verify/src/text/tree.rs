@@ -21,6 +21,8 @@ pub(crate) struct Drives {
     pub(crate) kinetic: Vec<Term>,
     pub(crate) potential: Vec<Term>,
     pub(crate) dissipation: Vec<Term>,
+    /// The forces of dry friction, with the coordinates on which they act.
+    pub(crate) friction: Vec<(String, Term)>,
 }
 
 /// The number of definitions of a body: J_0, J, R and r.
@@ -160,6 +162,21 @@ impl<'a> Tree<'a> {
         Ok(ways)
     }
 
+    /// The coordinate that moves a joint, by way of any number of others that it follows, and the ratio of the two.
+    fn leader(&self, joint: &Joint, names: &Names) -> Result<(String, Term), Unable> {
+        let Some(Following { body, ratio, .. }) = &joint.follows else {
+            let coordinate = joint.coordinates.first().map(|name| name.text.clone()).unwrap_or_default();
+            return Ok((coordinate, Term::Number(1.0)));
+        };
+        let followed = place_of(self.document, Some(&body.value));
+        let followed = followed.ok_or_else(|| Unable::UnknownName { name: body.value.clone() })?;
+        let (coordinate, of_followed) = self.leader(&self.document.tree[followed].joint, names)?;
+        Ok(match ratio {
+            Some(ratio) => (coordinate, times([&names.resolve(&ratio.ast)?, &of_followed])),
+            None => (coordinate, of_followed),
+        })
+    }
+
     /// The energies and powers of the rotors, springs and dampers of joints: ½ J x'², ½ k (x − x_0)² and ½ d x'².
     pub(crate) fn drives(&self, names: &Names) -> Result<Drives, Unable> {
         let mut drives = Drives::default();
@@ -168,7 +185,7 @@ impl<'a> Tree<'a> {
             let joint = &body.joint;
             let term =
                 |part: &Option<Expression>| part.as_ref().map(|part| names.resolve(&part.ast)).transpose();
-            let Drive { armature, stiffness, rest, damping } = &joint.drive;
+            let Drive { armature, stiffness, rest, damping, friction } = &joint.drive;
             let [x] = &self.ways(joint, names)?[..] else { continue };
             let rate = Term::Rate(Box::new(x.clone()));
             drives.kinetic.extend(term(armature)?.map(|armature| half_square(armature, &rate)));
@@ -177,6 +194,13 @@ impl<'a> Tree<'a> {
                 let rest = term(rest)?.unwrap_or(Term::Number(0.0));
                 let stretch = Term::Sum(vec![(false, x.clone()), (true, rest)]);
                 drives.potential.push(half_square(stiffness, &stretch));
+            }
+            if let Some(friction) = term(friction)? {
+                let sign = Term::Call(Function::Sign, vec![rate]);
+                let (coordinate, ratio) = self.leader(joint, names)?;
+                drives
+                    .friction
+                    .push((coordinate, Term::Negative(Box::new(times([&friction, &sign, &ratio])))));
             }
         }
         Ok(drives)
