@@ -215,6 +215,10 @@ public:
     {
         return say(pc_model_set_joint_damping, body.c_str(), damping.c_str());
     }
+    model &joint_friction(const std::string &body, const std::string &friction)
+    {
+        return say(pc_model_set_joint_friction, body.c_str(), friction.c_str());
+    }
     model &joint_rotation(const std::string &body, const matrix &entries)
     {
         return entries_of_body(pc_model_set_joint_rotation, body, entries);

@@ -220,6 +220,23 @@ pub unsafe extern "C" fn pc_model_set_joint_damping(
     unsafe { draft(model, error, "pc_model_set_joint_damping", write) }
 }
 
+/// Sets the dry friction F of a joint with one coordinate x: the force -F sign(x'), and any force up
+/// to F where the joint is at rest.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_joint_friction(
+    model: *mut pc_model,
+    body: *const c_char,
+    friction: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    // SAFETY: null or text, as the preamble demands.
+    let friction = || Ok(quoted(unsafe { text(friction, "friction") }?));
+    let write =
+        |draft: &mut Draft| put(draft, (body, "body"), Section::Bodies, &["joint", "friction"], friction);
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_joint_friction", write) }
+}
+
 /// Sets the rotation from the axes of a joint to those of the parent: the 9 entries of its
 /// matrix, row by row. It cannot be combined with pc_model_set_joint_turns.
 #[unsafe(no_mangle)]

@@ -25,13 +25,13 @@ pub(crate) fn inputs(robot: &Robot, names: &Names<'_>) -> Vec<String> {
     robot.actuators.iter().map(|actuator| format!("{} = 0.0", names.input(actuator))).collect()
 }
 
-/// The rotor, spring and damper of a joint with one coordinate, as entries of the joint.
+/// The rotor, spring, damper and friction of a joint with one coordinate, as entries of the joint.
 pub(crate) fn drive_of(joint: &Joint, names: &Names<'_>) -> String {
     let mut text = String::new();
     if !joint.kind.is_single() {
         return text;
     }
-    for quantity in ["armature", "stiffness", "damping"] {
+    for quantity in ["armature", "stiffness", "damping", "friction"] {
         let Some(name) = names.parameter(joint, quantity) else { continue };
         // Writing to a string cannot fail.
         let _ = write!(text, ", {quantity} = \"{name}\"");

@@ -112,13 +112,21 @@ pub(crate) struct Joint {
     pub(crate) remarks: Vec<String>,
 }
 
+/// The quantities that only joints with one coordinate have.
+const OF_SINGLE: [&str; 2] = ["friction", "stiffness"];
+
 impl Joint {
     /// The quantities that become parameters, each with its value.
     pub(crate) fn quantities(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        let all = [("damping", self.damping), ("stiffness", self.stiffness), ("armature", self.armature)];
+        let all = [
+            ("damping", self.damping),
+            ("friction", self.friction),
+            ("stiffness", self.stiffness),
+            ("armature", self.armature),
+        ];
         let (moves, is_single) = (self.kind != Kind::Fixed, self.kind.is_single());
         all.into_iter()
-            .filter(move |(name, value)| *value != 0.0 && moves && (is_single || *name != "stiffness"))
+            .filter(move |(name, value)| *value != 0.0 && moves && (is_single || !OF_SINGLE.contains(name)))
     }
 }
 

@@ -176,7 +176,7 @@ impl<'a> Tree<'a> {
             1 => format!("one <{name}> is left out"),
             _ => format!("{count} <{name}> are left out"),
         });
-        let dry = self.robot.joints.iter().filter(|joint| joint.friction != 0.0);
+        let dry = self.robot.joints.iter().filter(|joint| joint.friction != 0.0 && !joint.kind.is_single());
         let dry = dry.map(|joint| {
             format!("the dry friction {} of the joint `{}` is left out", joint.friction, joint.name)
         });

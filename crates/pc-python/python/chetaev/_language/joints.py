@@ -61,6 +61,8 @@ class _Single(Joint):
         A spring with the potential energy ``stiffness`` (x - ``rest``)²/2.
     damping : expression, optional
         The coefficient d of the force -d x'.
+    friction : expression, optional
+        The size F of dry friction, the force -F sign(x').
     """
 
     follows: str | None = None
@@ -70,6 +72,7 @@ class _Single(Joint):
     stiffness: Any = None
     rest: Any = None
     damping: Any = None
+    friction: Any = None
 
 
 @dataclass(frozen=True, kw_only=True)
