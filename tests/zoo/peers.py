@@ -125,11 +125,12 @@ def _as_pinocchio(q: np.ndarray, count: int) -> np.ndarray:
 def _reduced(
     robot: Robot, state: State, mass: np.ndarray, forces: np.ndarray, spread: np.ndarray
 ) -> Dynamics:
-    """From the velocities of the peer to those of the joints that are free; dampings are added."""
+    """From the velocities of the peer to those of the joints that are free; dampings and dry friction are added."""
     free, led = reduction(robot)
     damping = np.zeros(robot.size)
     for joint in robot.joints:
-        damping[joint.velocities] = joint.damping * state.v[joint.name]
+        velocity = np.asarray(state.v[joint.name])
+        damping[joint.velocities] = joint.damping * velocity + joint.friction * np.sign(velocity)
     names = [joint.name for joint in free for _ in state.v[joint.name]]
     total = spread @ led
     return Dynamics(names, total.T @ mass @ total, total.T @ forces + led.T @ damping)

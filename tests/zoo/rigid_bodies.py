@@ -48,7 +48,7 @@ class State:
 class Dynamics:
     """M q̈ + h = 0 in the velocities that are free, in the order of `names`.
 
-    `mass` is M; `bias` is h, the forces that hold q̈ at zero against gravity, dampings and the velocities.
+    `mass` is M; `bias` is h, the forces that hold q̈ at zero against gravity, dampings, dry friction and the velocities.
     """
 
     names: list[str]
@@ -68,7 +68,8 @@ def dynamics(robot: Robot, state: State) -> Dynamics:
     free, spread = reduction(robot)
     damping = np.concatenate([np.full(_count(joint), joint.damping) for joint in robot.joints])
     velocities = tree.velocities
-    forces = tree.forces(np.zeros(robot.size)) + damping * velocities
+    friction = np.concatenate([np.full(_count(joint), joint.friction) for joint in robot.joints])
+    forces = tree.forces(np.zeros(robot.size)) + damping * velocities + friction * np.sign(velocities)
     names = [joint.name for joint in free for _ in range(_count(joint))]
     return Dynamics(names, spread.T @ tree.mass_matrix() @ spread, spread.T @ forces)
 

@@ -1,6 +1,6 @@
 """A robot as its URDF file describes it: a tree of links, and how each joint moves.
 
-Only what the laws of motion need is read: masses, origins, axes, dampings, and which joint follows which.
+Only what the laws of motion need is read: masses, origins, axes, dampings, dry friction, and which joint follows which.
 Limits, dry friction, shapes, transmissions and whatever simulators add are passed over.
 """
 
@@ -46,6 +46,7 @@ class Joint:
     rotation: np.ndarray
     axis: np.ndarray
     damping: float
+    friction: float
     limits: tuple[float, float] | None
     mimic: Mimic | None
     velocities: slice = dataclasses.field(default_factory=lambda: slice(0, 0))
@@ -104,6 +105,7 @@ def read(path: pathlib.Path) -> Robot:
         np.eye(3),
         np.zeros(3),
         0.0,
+        0.0,
         None,
         None,
     )
@@ -155,6 +157,7 @@ def _joint(element: ElementTree.Element, links: dict[str, int]) -> Joint:
         rotation=from_roll_pitch_yaw(_vector(origin, "rpy")),
         axis=direction / np.linalg.norm(direction) if VELOCITIES[kind] in (1, 3) else direction,
         damping=0.0 if dynamics is None else float(dynamics.get("damping", "0")),
+        friction=0.0 if dynamics is None or kind in ("planar", "floating") else float(dynamics.get("friction", "0")),
         limits=None if limit is None else (float(limit.get("lower", "0")), float(limit.get("upper", "0"))),
         mimic=None
         if mimic is None
