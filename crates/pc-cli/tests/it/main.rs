@@ -12,6 +12,7 @@ mod checkpoint;
 mod command_line_page;
 mod compare;
 mod constraints;
+mod dry_friction;
 mod each_model;
 mod equations;
 mod estimate;
