@@ -20,21 +20,25 @@ pub(crate) struct TreeShare<'g> {
 }
 
 impl<'g> Tree<'g> {
-    /// −½ k (x − x_0)² of each spring.
+    /// −½ k (x − x_0)² of each spring, and −½ k s² of stops.
     pub(crate) fn springs(&self) -> impl Iterator<Item = Expr<'g>> {
-        let energy = |(drive, x, _): (Drive<'g>, Expr<'g>, Expr<'g>)| {
-            let (stiffness, rest) = drive.spring?;
-            Some(-(stiffness * (x - rest).square() / 2.0))
+        let energies = |(drive, x, _): (Drive<'g>, Expr<'g>, Expr<'g>)| {
+            let spring = drive.spring.map(|(stiffness, rest)| stiffness * (x - rest).square() / 2.0);
+            let stops = drive.stops.map(|stops| stops.energy(x));
+            spring.into_iter().chain(stops).map(|energy| -energy)
         };
-        self.drives().filter_map(energy)
+        self.drives().flat_map(energies)
     }
 
-    /// The forces of dampers and friction on the quasi-velocities `eta`: −(d ẋ + F sign ẋ) ∂ẋ/∂η_s.
+    /// The forces of dampers, stops and friction on the quasi-velocities `eta`: −(d ẋ + F sign ẋ) ∂ẋ/∂η_s.
     pub(crate) fn dampers(&self, eta: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let mut forces = vec![Expr::ZERO; eta.len()];
-        let is_resisted = |drive: &Drive<'g>| !(drive.damping.is_zero() && drive.friction.is_zero());
-        for (drive, _, rate) in self.drives().filter(|(drive, ..)| is_resisted(drive)) {
-            let resisting = drive.damping * rate + drive.friction * rate.sign();
+        for (drive, x, rate) in self.drives() {
+            let stops = drive.stops.map_or(Expr::ZERO, |stops| stops.damper(x));
+            let resisting = (drive.damping + stops) * rate + drive.friction * rate.sign();
+            if resisting.is_zero() {
+                continue;
+            }
             for (force, ratio) in forces.iter_mut().zip(self.graph.gradient(rate, eta)) {
                 *force -= resisting * ratio;
             }

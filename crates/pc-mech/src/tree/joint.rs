@@ -36,7 +36,7 @@ pub struct Joint<'g> {
     pub(crate) drive: Drive<'g>,
 }
 
-/// The drive of a joint with the coordinate x: a rotor, a spring, a damper and dry friction.
+/// The drive of a joint with the coordinate x: a rotor, a spring, a damper, dry friction and stops.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Drive<'g> {
     /// The inertia J of ½ J x'².
@@ -47,11 +47,35 @@ pub(crate) struct Drive<'g> {
     pub(crate) damping: Expr<'g>,
     /// The size F of Coulomb's force −F sign x'.
     pub(crate) friction: Expr<'g>,
+    /// The stops on both sides.
+    pub(crate) stops: Option<Stops<'g>>,
+}
+
+/// Stops at the ends of the way of a joint with the coordinate x. Beyond an end by s, they push back with k s + d s'.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stops<'g> {
+    pub(crate) lower: Expr<'g>,
+    pub(crate) upper: Expr<'g>,
+    pub(crate) stiffness: Expr<'g>,
+    pub(crate) damping: Expr<'g>,
+}
+
+impl<'g> Stops<'g> {
+    /// ½ k s² on both sides.
+    pub(crate) fn energy(&self, x: Expr<'g>) -> Expr<'g> {
+        let beyond = [x - self.upper, self.lower - x].map(|s| s.max(0.0).square());
+        self.stiffness * (beyond[0] + beyond[1]) / 2.0
+    }
+
+    /// The coefficient of the damper: d beyond an end, 0 between the ends.
+    pub(crate) fn damper(&self, x: Expr<'g>) -> Expr<'g> {
+        self.damping * ((x - self.upper).step(1.0, 0.0) + (self.lower - x).step(1.0, 0.0))
+    }
 }
 
 impl<'g> Drive<'g> {
     const NONE: Drive<'static> =
-        Drive { armature: Expr::ZERO, spring: None, damping: Expr::ZERO, friction: Expr::ZERO };
+        Drive { armature: Expr::ZERO, spring: None, damping: Expr::ZERO, friction: Expr::ZERO, stops: None };
 
     /// Its first part, named, if it has any.
     pub(crate) fn part(&self) -> Option<&'static str> {
@@ -60,6 +84,7 @@ impl<'g> Drive<'g> {
             Drive { spring: Some(_), .. } => Some("spring"),
             Drive { damping, .. } if !damping.is_zero() => Some("damping"),
             Drive { friction, .. } if !friction.is_zero() => Some("friction"),
+            Drive { stops: Some(_), .. } => Some("limits"),
             _ => None,
         }
     }
@@ -70,6 +95,12 @@ impl<'g> Drive<'g> {
             spring: self.spring.map(|(stiffness, rest)| (put(stiffness), put(rest))),
             damping: put(self.damping),
             friction: put(self.friction),
+            stops: self.stops.map(|stops| Stops {
+                lower: put(stops.lower),
+                upper: put(stops.upper),
+                stiffness: put(stops.stiffness),
+                damping: put(stops.damping),
+            }),
         }
     }
 }
@@ -219,6 +250,20 @@ impl<'g> Joint<'g> {
     #[must_use]
     pub fn friction(self, size: impl Into<Expr<'g>>) -> Joint<'g> {
         Joint { drive: Drive { friction: size.into(), ..self.drive }, ..self }
+    }
+
+    /// The same joint, revolute, prismatic or screw, with stops at the two ends of its way: where its coordinate x is
+    /// beyond an end by s, a force k s + d s' drives it back.
+    #[must_use]
+    pub fn limits(
+        self,
+        [lower, upper]: [impl Into<Expr<'g>>; 2],
+        stiffness: impl Into<Expr<'g>>,
+        damping: impl Into<Expr<'g>>,
+    ) -> Joint<'g> {
+        let (lower, upper) = (lower.into(), upper.into());
+        let stops = Stops { lower, upper, stiffness: stiffness.into(), damping: damping.into() };
+        Joint { drive: Drive { stops: Some(stops), ..self.drive }, ..self }
     }
 
     /// The joint with each expression replaced.

@@ -64,7 +64,7 @@ pub struct Joint {
     pub drive: Drive,
 }
 
-/// The rotor, spring, damper and dry friction of a joint with the coordinate x.
+/// The rotor, spring, damper, dry friction and stops of a joint with the coordinate x.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drive {
     /// The inertia J of ½ J x'².
@@ -77,6 +77,12 @@ pub struct Drive {
     pub damping: Option<Expression>,
     /// The size F of the force −F sign x'.
     pub friction: Option<Expression>,
+    /// The ends of the way of x, at which there are stops.
+    pub limits: Option<[Expression; 2]>,
+    /// The stiffness k of the stops: beyond an end by s, they push back with k s + d s'.
+    pub stop_stiffness: Option<Expression>,
+    /// d; 0 if left out.
+    pub stop_damping: Option<Expression>,
 }
 
 /// How a joint with one coordinate is geared to that of another body: x = ratio · x of the other + offset.

@@ -30,9 +30,23 @@ const JOINT_KEYS: &[&str] = &[
     "rest",
     "damping",
     "friction",
+    "limits",
+    "stop_stiffness",
+    "stop_damping",
 ];
+const LIMITS: &str = "limits = [-1.5, 1.5]";
 /// The entries of joints with one coordinate.
-const OF_SINGLE: &[&str] = &["follows", "armature", "stiffness", "rest", "damping", "friction"];
+const OF_SINGLE: &[&str] = &[
+    "follows",
+    "armature",
+    "stiffness",
+    "rest",
+    "damping",
+    "friction",
+    "limits",
+    "stop_stiffness",
+    "stop_damping",
+];
 pub(super) const JOINT: &str = "joint = { kind = \"revolute\", axis = [0, 0, 1], at = [0, 0, 0] }";
 const AXIS: &str = "axis = [0, 0, 1]";
 const AXES: &str = "axes = [[1, 0, 0], [0, 1, 0]]";
@@ -133,14 +147,21 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
             "follows" => follows = Some(part),
             "ratio" => ratio = Some(part),
             "offset" => offset = Some(part),
-            "armature" | "stiffness" | "rest" | "damping" | "friction" => {
+            "limits" => {
+                drive.limits = Some(part.array("2 expressions", LIMITS)?);
+                driven.push(part);
+            }
+            "armature" | "stiffness" | "rest" | "damping" | "friction" | "stop_stiffness"
+            | "stop_damping" => {
                 let value = Some(part.expression()?);
                 match part.key() {
                     "armature" => drive.armature = value,
                     "stiffness" => drive.stiffness = value,
                     "rest" => drive.rest = value,
                     "damping" => drive.damping = value,
-                    _ => drive.friction = value,
+                    "friction" => drive.friction = value,
+                    "stop_stiffness" => drive.stop_stiffness = value,
+                    _ => drive.stop_damping = value,
                 }
                 driven.push(part);
             }
@@ -166,14 +187,19 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
         (_, Some((part, _))) => return Err(without_effect(&part, kind)),
         (_, None) => None,
     };
-    if let Some(part) =
-        driven.iter().find(|part| !kind.is_single() || part.key() == "rest" && drive.stiffness.is_none())
-    {
-        if !kind.is_single() {
-            return Err(without_effect(part, kind));
+    if let Some(part) = driven.first().filter(|_| !kind.is_single()) {
+        return Err(without_effect(part, kind));
+    }
+    for part in &driven {
+        let (without, example, is_there) = match part.key() {
+            "rest" => ("stiffness", "stiffness = 10.0", drive.stiffness.is_some()),
+            "limits" => ("stop_stiffness", "stop_stiffness = 1e4", drive.stop_stiffness.is_some()),
+            "stop_stiffness" | "stop_damping" => ("limits", LIMITS, drive.limits.is_some()),
+            _ => continue,
+        };
+        if !is_there {
+            return Err(part.key_error(ErrorKind::NoEffect { key: part.key().to_owned(), without, example }));
         }
-        let (key, example) = (part.key().to_owned(), "stiffness = 10.0");
-        return Err(part.key_error(ErrorKind::NoEffect { key, without: "stiffness", example }));
     }
     let coordinates = names(coordinates.as_ref(), body, kind.coordinates(body.key()))?;
     let gear = Gear { follows, ratio, offset };

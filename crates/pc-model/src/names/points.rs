@@ -101,9 +101,9 @@ impl<'g> Scope<'g, '_> {
         })
     }
 
-    /// The joint with its rotor, spring, damper and friction.
+    /// The joint with its rotor, spring, damper, friction and stops.
     fn driven(&mut self, joint: &document::Joint, made: Joint<'g>) -> Result<Joint<'g>, ModelError> {
-        let document::Drive { armature, stiffness, rest, damping, friction } = &joint.drive;
+        let document::Drive { armature, stiffness, rest, damping, friction, .. } = &joint.drive;
         let mut constant = |part: &Option<Expression>| -> Result<Option<Expr<'g>>, ModelError> {
             part.as_ref().map(|part| self.resolve(part, Stage::Joint)).transpose()
         };
@@ -119,6 +119,14 @@ impl<'g> Scope<'g, '_> {
         }
         if let Some(friction) = constant(friction)? {
             made = made.friction(friction);
+        }
+        if let Some([lower, upper]) = &joint.drive.limits {
+            let ends = [self.resolve(lower, Stage::Joint)?, self.resolve(upper, Stage::Joint)?];
+            let mut number = |part: &Option<Expression>| -> Result<Expr<'g>, ModelError> {
+                part.as_ref().map_or(Ok(Expr::ZERO), |part| self.resolve(part, Stage::Joint))
+            };
+            let stiffness = number(&joint.drive.stop_stiffness)?;
+            made = made.limits(ends, stiffness, number(&joint.drive.stop_damping)?);
         }
         Ok(made)
     }

@@ -185,7 +185,7 @@ impl<'a> Tree<'a> {
             let joint = &body.joint;
             let term =
                 |part: &Option<Expression>| part.as_ref().map(|part| names.resolve(&part.ast)).transpose();
-            let Drive { armature, stiffness, rest, damping, friction } = &joint.drive;
+            let Drive { armature, stiffness, rest, damping, friction, limits, .. } = &joint.drive;
             let [x] = &self.ways(joint, names)?[..] else { continue };
             let rate = Term::Rate(Box::new(x.clone()));
             drives.kinetic.extend(term(armature)?.map(|armature| half_square(armature, &rate)));
@@ -194,6 +194,23 @@ impl<'a> Tree<'a> {
                 let rest = term(rest)?.unwrap_or(Term::Number(0.0));
                 let stretch = Term::Sum(vec![(false, x.clone()), (true, rest)]);
                 drives.potential.push(half_square(stiffness, &stretch));
+            }
+            if let Some([lower, upper]) = limits {
+                let [lower, upper] = [names.resolve(&lower.ast)?, names.resolve(&upper.ast)?];
+                let beyond = [
+                    Term::Sum(vec![(false, x.clone()), (true, upper)]),
+                    Term::Sum(vec![(false, lower), (true, x.clone())]),
+                ];
+                let stiffness = term(&joint.drive.stop_stiffness)?.unwrap_or(Term::Number(0.0));
+                let damping = term(&joint.drive.stop_damping)?;
+                let [zero, one] = [0.0, 1.0].map(Term::Number);
+                for s in beyond {
+                    let depth = Term::Call(Function::Max, vec![s.clone(), zero.clone()]);
+                    drives.potential.push(half_square(stiffness.clone(), &depth));
+                    let Some(damping) = &damping else { continue };
+                    let acts = Term::Call(Function::Step, vec![s, one.clone(), zero.clone()]);
+                    drives.dissipation.push(half_square(times([damping, &acts]), &rate));
+                }
             }
             if let Some(friction) = term(friction)? {
                 let sign = Term::Call(Function::Sign, vec![rate]);
