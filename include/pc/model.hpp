@@ -219,6 +219,13 @@ public:
     {
         return say(pc_model_set_joint_friction, body.c_str(), friction.c_str());
     }
+    /// Stops at the ends of the way of a joint.
+    model &joint_limits(const std::string &body, const std::string &lower, const std::string &upper,
+                        const std::string &stiffness, const std::string &damping = "0")
+    {
+        return say(pc_model_set_joint_limits, body.c_str(), lower.c_str(), upper.c_str(), stiffness.c_str(),
+                   damping.c_str());
+    }
     model &joint_rotation(const std::string &body, const matrix &entries)
     {
         return entries_of_body(pc_model_set_joint_rotation, body, entries);

@@ -237,6 +237,36 @@ pub unsafe extern "C" fn pc_model_set_joint_friction(
     unsafe { draft(model, error, "pc_model_set_joint_friction", write) }
 }
 
+/// Sets stops at the ends of the way of a joint with one coordinate: beyond an end by s, they push
+/// back with stiffness s + damping s'; a null `damping` stands for 0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_joint_limits(
+    model: *mut pc_model,
+    body: *const c_char,
+    lower: *const c_char,
+    upper: *const c_char,
+    stiffness: *const c_char,
+    damping: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or texts, as the preamble demands.
+        let ends = || Ok(list(&unsafe { [text(lower, "lower")?, text(upper, "upper")?] }));
+        put(draft, (body, "body"), Section::Bodies, &["joint", "limits"], ends)?;
+        // SAFETY: null or text, as the preamble demands.
+        let stiffness = || Ok(quoted(unsafe { text(stiffness, "stiffness") }?));
+        put(draft, (body, "body"), Section::Bodies, &["joint", "stop_stiffness"], stiffness)?;
+        if damping.is_null() {
+            return Ok(());
+        }
+        // SAFETY: text, as the preamble demands.
+        let damping = || Ok(quoted(unsafe { text(damping, "damping") }?));
+        put(draft, (body, "body"), Section::Bodies, &["joint", "stop_damping"], damping)
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_joint_limits", write) }
+}
+
 /// Sets the rotation from the axes of a joint to those of the parent: the 9 entries of its
 /// matrix, row by row. It cannot be combined with pc_model_set_joint_turns.
 #[unsafe(no_mangle)]

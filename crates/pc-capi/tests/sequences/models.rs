@@ -125,7 +125,7 @@ unsafe fn say(
     let entries = entries.as_ptr();
     // SAFETY: as promised.
     unsafe {
-        match function % 80 {
+        match function % 81 {
             0..4 => pc_model_add_coordinate(model, a, x, error),
             4..8 => pc_model_set_kinetic(model, b, error),
             8 => pc_model_add_quasi_velocity(model, a, b, x, error),
@@ -187,6 +187,7 @@ unsafe fn say(
             77 => pc_model_set_joint_spring(model, a, b, if yes == 1 { z } else { ptr::null() }, error),
             78 => pc_model_set_joint_damping(model, a, b, error),
             79 => pc_model_set_joint_friction(model, a, b, error),
+            80 => pc_model_set_joint_limits(model, a, b, z, b, if yes == 1 { z } else { ptr::null() }, error),
             44 => pc_model_keep(model, if yes == 1 { c"energy".as_ptr() } else { a }, error),
             45 => pc_model_project_start(model, yes, error),
             46 => pc_model_observe_reactions(model, yes, error),

@@ -63,6 +63,10 @@ class _Single(Joint):
         The coefficient d of the force -d x'.
     friction : expression, optional
         The size F of dry friction, the force -F sign(x').
+    limits : pair of expressions, optional
+        The ends of its way: stops push back with ``stop_stiffness`` s + ``stop_damping`` s' where x is beyond an end by s.
+    stop_stiffness, stop_damping : expression, optional
+        No damping by default.
     """
 
     follows: str | None = None
@@ -73,6 +77,9 @@ class _Single(Joint):
     rest: Any = None
     damping: Any = None
     friction: Any = None
+    limits: Sequence[Any] | None = None
+    stop_stiffness: Any = None
+    stop_damping: Any = None
 
 
 @dataclass(frozen=True, kw_only=True)
