@@ -4,7 +4,7 @@
     python tests/zoo/compare.py hand34 --program pc  # one of them, with another program
 
 Prints a table and ends with 1 where anything disagrees, where pc refuses what it should take or takes what
-it should refuse, and where accelerations.json is not what record.py would write. The columns `pc`,
+it should refuse, and where dynamics.json is not what record.py would write. The columns `pc`,
 `Pinocchio` and `MuJoCo` have the largest difference from rigid_bodies.py over all accelerations, relative
 to the largest acceleration. `residual` is what is left over where the accelerations of pc are put into the
 equations of rigid_bodies.py: in each row relative to the sizes that its terms √M_ii √M_jj a_j and h_i can
@@ -82,8 +82,8 @@ class Row:
         state = states.of(robot, path.stem)
         equations = rigid_bodies.dynamics(robot, state)
         reference = equations.accelerations()
-        if not _recorded(path.stem, record.of(robot, state, equations)):
-            self.remarks.append("accelerations.json has other numbers: run record.py")
+        if not _recorded(path.stem, record.of(path.stem, robot, state, equations)):
+            self.remarks.append("dynamics.json has other numbers: run record.py")
             self.right = False
         print(f"{len(equations.names):11}", end="", flush=True)
         size = np.abs(reference).max()
@@ -127,11 +127,11 @@ class Row:
 
 
 def _recorded(name: str, entry: dict) -> bool:
-    """Whether accelerations.json has these numbers, but for rounding, which depends on the processor."""
+    """Whether dynamics.json has these numbers, but for rounding, which depends on the processor."""
     kept = json.loads(record.FILE.read_text(encoding="utf-8")).get(name)
     if kept is None or _names(kept) != _names(entry):
         return False
-    for kind in ("q", "v", "acceleration", "bias", "mass"):
+    for kind in ("q", "v", "acceleration", "bias", "mass", "derivative"):
         one, two = (np.concatenate([joint[kind] for joint in each["joints"]]) for each in (entry, kept))
         if one.shape != two.shape or np.abs(one - two).max() > ACCELERATIONS * np.abs(one).max():
             return False

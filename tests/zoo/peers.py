@@ -1,6 +1,6 @@
 """The same equations of motion from Pinocchio and MuJoCo, where these are installed.
 
-Both get the tree without followers, dampings and friction, and planar joints as two that slide and one that
+Both get the tree without followers, damping and dry friction, and planar joints as two that slide and one that
 turns. They read origins, axes, masses and inertias by themselves, and give the mass matrix and the forces
 of all joints. These are then reduced to the velocities that are free.
 """
@@ -13,6 +13,7 @@ import numpy as np
 
 from rigid_bodies import GRAVITY, Dynamics, State, from_quaternion, plane, reduction
 from robot import Robot
+from states import rates_of
 
 try:
     import pinocchio
@@ -44,6 +45,34 @@ class Part:
 
 def by_pinocchio(path: pathlib.Path, robot: Robot, state: State) -> Dynamics:
     """Mass matrix and forces by Pinocchio's `crba` and `nle`."""
+    model, q, v, spread = _in_pinocchio(path, robot, state)
+    data = model.createData()
+    mass = np.triu(pinocchio.crba(model, data, q))
+    mass = mass + np.triu(mass, 1).T
+    return _reduced(robot, state, mass, pinocchio.nle(model, data, q, v), spread)
+
+
+def derivative_by_pinocchio(
+    path: pathlib.Path, robot: Robot, state: State, direction: State, equations: Dynamics
+) -> np.ndarray:
+    """How the accelerations change along a direction, by Pinocchio's `computeRNEADerivatives`."""
+    model, q, v, spread = _in_pinocchio(path, robot, state)
+    _, led = reduction(robot)
+    total = spread @ led
+    data = model.createData()  # which owns the two matrices
+    by_q, by_v, _ = pinocchio.computeRNEADerivatives(model, data, q, v, total @ equations.accelerations())
+    along_q, along_v = np.zeros(robot.size), np.zeros(robot.size)
+    damping = np.zeros(robot.size)
+    for joint in robot.joints:
+        along_q[joint.velocities] = rates_of(state.q[joint.name], direction.q[joint.name])
+        along_v[joint.velocities] = direction.v[joint.name]
+        damping[joint.velocities] = joint.damping * np.asarray(direction.v[joint.name])
+    forces = total.T @ (by_q @ spread @ along_q + by_v @ spread @ along_v) + led.T @ damping
+    return equations.solved(forces)
+
+
+def _in_pinocchio(path: pathlib.Path, robot: Robot, state: State):
+    """The model, q and v of Pinocchio, and the matrix from the velocities of all joints to v."""
     text = ElementTree.tostring(_bare(path), encoding="unicode")
     try:
         root = (pinocchio.JointModelFreeFlyer(), ROOT) if robot.floating else ()
@@ -51,7 +80,6 @@ def by_pinocchio(path: pathlib.Path, robot: Robot, state: State) -> Dynamics:
     except ValueError as error:
         raise Refused(str(error)) from error
     model.gravity.linear = np.array([0.0, 0.0, -GRAVITY])
-    data = model.createData()
     q, v = np.zeros(model.nq), np.zeros(model.nv)
     spread = np.zeros((model.nv, robot.size))
     for part in _parts(robot, state):
@@ -60,9 +88,7 @@ def by_pinocchio(path: pathlib.Path, robot: Robot, state: State) -> Dynamics:
         q[joint.idx_q : joint.idx_q + joint.nq] = _as_pinocchio(part.q, joint.nq)
         v[there] = part.v
         spread[there, part.velocities] = np.eye(len(part.v))
-    mass = np.triu(pinocchio.crba(model, data, q))
-    mass = mass + np.triu(mass, 1).T
-    return _reduced(robot, state, mass, pinocchio.nle(model, data, q, v), spread)
+    return model, q, v, spread
 
 
 def by_mujoco(path: pathlib.Path, robot: Robot, state: State) -> Dynamics:
@@ -125,7 +151,7 @@ def _as_pinocchio(q: np.ndarray, count: int) -> np.ndarray:
 def _reduced(
     robot: Robot, state: State, mass: np.ndarray, forces: np.ndarray, spread: np.ndarray
 ) -> Dynamics:
-    """From the velocities of the peer to those of the joints that are free; dampings and dry friction are added."""
+    """From the velocities of the peer to those of the joints that are free; damping and dry friction are added."""
     free, led = reduction(robot)
     damping = np.zeros(robot.size)
     for joint in robot.joints:

@@ -1,4 +1,4 @@
-"""Writes accelerations.json: for each robot a state, and what rigid_bodies.py finds there.
+"""Writes dynamics.json: for each robot a state, and what rigid_bodies.py finds there.
 
     python tests/zoo/record.py
 
@@ -18,7 +18,7 @@ import robot as robots
 import states
 
 HERE = pathlib.Path(__file__).parent
-FILE = HERE / "accelerations.json"
+FILE = HERE / "dynamics.json"
 WHOLE = 8
 """The number of velocities up to which the mass matrix is written as a whole."""
 TOLERANCE = 1e-10
@@ -38,10 +38,12 @@ def main() -> int:
     return 0
 
 
-def of(robot: robots.Robot, state: rigid_bodies.State, equations: rigid_bodies.Dynamics) -> dict:
+def of(name: str, robot: robots.Robot, state: rigid_bodies.State, equations: rigid_bodies.Dynamics) -> dict:
     """The entry of a robot."""
     free, _ = rigid_bodies.reduction(robot)
     accelerations, diagonal = equations.accelerations(), np.diag(equations.mass)
+    direction = states.direction_of(robot, name, state)
+    derivative = rigid_bodies.derivative(robot, state, direction, equations)
     joints, first = [], 0
     for joint in free:
         here = slice(first, first + len(state.v[joint.name]))
@@ -55,6 +57,8 @@ def of(robot: robots.Robot, state: rigid_bodies.State, equations: rigid_bodies.D
                 "acceleration": accelerations[here].tolist(),
                 "bias": equations.bias[here].tolist(),
                 "mass": diagonal[here].tolist(),
+                "along": [direction.q[joint.name].tolist(), direction.v[joint.name].tolist()],
+                "derivative": derivative[here].tolist(),
             }
         )
     followers = [joint.name for joint in robot.joints if joint.mimic is not None]
@@ -74,10 +78,21 @@ def _entry(path: pathlib.Path) -> dict:
         ("accelerations", equations.accelerations(), other.accelerations()),
         ("bias", equations.bias, other.bias),
         ("mass matrix", equations.mass, other.mass),
+        ("derivative", *_derivatives(path, robot, state, equations)),
     ):
         if np.abs(one - two).max() > TOLERANCE * np.abs(one).max():
             sys.exit(f"{path.name}: Pinocchio disagrees in the {what}")
-    return of(robot, state, equations)
+    return of(path.stem, robot, state, equations)
+
+
+def _derivatives(
+    path: pathlib.Path, robot: robots.Robot, state: rigid_bodies.State, equations: rigid_bodies.Dynamics
+) -> tuple[np.ndarray, np.ndarray]:
+    direction = states.direction_of(robot, path.stem, state)
+    return (
+        rigid_bodies.derivative(robot, state, direction, equations),
+        peers.derivative_by_pinocchio(path, robot, state, direction, equations),
+    )
 
 
 def _written(entry: dict) -> str:

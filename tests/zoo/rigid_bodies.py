@@ -56,10 +56,14 @@ class Dynamics:
     bias: np.ndarray
 
     def accelerations(self) -> np.ndarray:
-        """The solution, by Cholesky's factors of the matrix scaled to a unit diagonal."""
+        """The solution q̈."""
+        return self.solved(self.bias)
+
+    def solved(self, forces: np.ndarray) -> np.ndarray:
+        """−M⁻¹ times forces, by Cholesky's factors of the matrix scaled to a unit diagonal."""
         scale = 1.0 / np.sqrt(np.diag(self.mass))
         lower = np.linalg.cholesky(self.mass * np.outer(scale, scale))
-        return -scale * np.linalg.solve(lower.T, np.linalg.solve(lower, scale * self.bias))
+        return -scale * np.linalg.solve(lower.T, np.linalg.solve(lower, scale * forces))
 
 
 def dynamics(robot: Robot, state: State) -> Dynamics:
@@ -72,6 +76,25 @@ def dynamics(robot: Robot, state: State) -> Dynamics:
     forces = tree.forces(np.zeros(robot.size)) + damping * velocities + friction * np.sign(velocities)
     names = [joint.name for joint in free for _ in range(_count(joint))]
     return Dynamics(names, spread.T @ tree.mass_matrix() @ spread, spread.T @ forces)
+
+
+def derivative(robot: Robot, state: State, direction: State, equations: Dynamics) -> np.ndarray:
+    """How the accelerations change along a direction of states: δa with M δa + δτ = 0.
+
+    δτ is the change of the forces τ(q, v, a) of Newton–Euler at constant accelerations (Carpentier & Mansard 2018),
+    and the imaginary part of their value at the complex state that is ε i away in the direction, divided by ε: exact
+    to rounding, since no difference is taken (Squire & Trapp 1998).
+    """
+    step = 1e-30
+    beside = State(*(
+        {name: value + 1j * step * np.asarray(along[name]) for name, value in one.items()}
+        for one, along in ((state.q, direction.q), (state.v, direction.v))
+    ))
+    _, spread = reduction(robot)
+    tree = Tree(robot, beside)
+    damping = np.concatenate([np.full(_count(joint), joint.damping) for joint in robot.joints])
+    forces = tree.forces(spread @ equations.accelerations()) + damping * tree.velocities
+    return equations.solved(spread.T @ forces.imag / step)
 
 
 def reduction(robot: Robot) -> tuple[list[Joint], np.ndarray]:
@@ -136,7 +159,7 @@ class Tree:
             velocity.append(v)
             acceleration.append(a)
             force.append(self.inertia[k] @ a - _cross_motion(v).T @ (self.inertia[k] @ v))
-        result = np.zeros(self.robot.size)
+        result = np.zeros_like(force[0], shape=self.robot.size)
         for k in reversed(range(len(force))):
             result[self.robot.joints[k].velocities] = self.subspace[k].T @ force[k]
             if self.parent[k] >= 0:

@@ -4,7 +4,7 @@ import random
 
 import numpy as np
 
-from rigid_bodies import State, led
+from rigid_bodies import State, from_quaternion, led
 from robot import Joint, Robot
 
 
@@ -17,6 +17,41 @@ def of(robot: Robot, name: str) -> State:
     ):
         q[joint.name], v[joint.name] = _drawn(joint, draw)
     return with_followers(robot, State(q, v))
+
+
+def direction_of(robot: Robot, name: str, state: State) -> State:
+    """A direction in which the state can change: rates of q, along which quaternions keep their length, and of v."""
+    draw = random.Random(f"{name}, direction")
+    q, v = {}, {}
+    for joint in sorted(
+        (joint for joint in robot.joints if joint.mimic is None), key=lambda joint: joint.name
+    ):
+        rates, v[joint.name] = (_uniform(draw, 1.0, len(state.v[joint.name])) for _ in range(2))
+        q[joint.name] = _moved(state.q[joint.name], rates)
+    by_name = {joint.name: joint for joint in robot.joints}
+    for joint in robot.joints:
+        if joint.mimic is not None:
+            leader, factor, _ = led(joint, by_name)
+            q[joint.name], v[joint.name] = factor * q[leader.name], factor * v[leader.name]
+    return State(q, v)
+
+
+def rates_of(q: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """The velocities, as in `State.v`, with which q moves along a direction."""
+    if len(q) != 7:
+        return along
+    scalar, vector = q[3], q[4:]
+    turning = 2.0 * (scalar * along[4:] - along[3] * vector - np.cross(vector, along[4:]))
+    return np.concatenate([from_quaternion(q[3:]).T @ along[:3], turning])
+
+
+def _moved(q: np.ndarray, rates: np.ndarray) -> np.ndarray:
+    """ẋ = R v and q̇ = q ω / 2 of a joint that moves freely; of others, the rates themselves."""
+    if len(q) != 7:
+        return rates
+    scalar, vector, turning = q[3], q[4:], rates[3:]
+    turned = np.concatenate([[-vector @ turning], scalar * turning + np.cross(vector, turning)]) / 2.0
+    return np.concatenate([from_quaternion(q[3:]) @ rates[:3], turned])
 
 
 def with_followers(robot: Robot, state: State) -> State:

@@ -271,7 +271,7 @@ fn inverse_dynamics_is_the_residual_of_accelerations() {
         let forces = |accelerations: Option<&[f64]>| {
             let mut tau = vec![f64::NAN; k];
             let (y, out) = (y.as_ptr(), tau.as_mut_ptr());
-            let (given, count) = accelerations.map_or((std::ptr::null(), 0), |a| (a.as_ptr(), a.len()));
+            let (given, count) = accelerations.map_or((ptr::null(), 0), |a| (a.as_ptr(), a.len()));
             // SAFETY: a live system and arrays as said.
             call(|error| unsafe {
                 pc_system_inverse_dynamics(system.0, t, y, dim, given, count, out, k, error)
@@ -286,7 +286,7 @@ fn inverse_dynamics_is_the_residual_of_accelerations() {
         let bias = forces(None).unwrap();
         assert!(right.iter().zip(&bias).all(|(r, b)| (r + b).abs() < 1e-12), "{name}: {right:?} {bias:?}");
         let wrong = forces(Some(&rates[n..n + k - 1])).unwrap_err();
-        assert_eq!(wrong.status, PC_INVALID_ARGUMENT, "{name}");
+        assert_eq!(wrong.status, pc_status::PC_INVALID_ARGUMENT, "{name}");
     }
 }
 
