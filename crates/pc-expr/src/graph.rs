@@ -4,7 +4,7 @@
 //! (exact constants), `function` (the elementary functions), `node` and `divisors` (sets of them) first, then
 //! `dag` (the arena) with `normal_form`, `calls`, `value`, `signs` and `regularity`, which treat sums and
 //! products, calls, values in prime fields, signs, and divisors. `graph` owns a `dag` and stays within a
-//! `budget` (`limits`, and for time a `deadline`); `expr` is the handle with which formulas are written;
+//! `budget` (`limits`, and for time a `deadline`), and `in_time` knows which symbols are functions of time; `expr` is the handle with which formulas are written;
 //! `subgraph` walks the nodes below some expressions, `queries` answers questions about whole expressions,
 //! `undetermined` holds functions that are not given,
 //! `applied` their calls and `stand_in` the functions that take their place in numbers, `places` finds symbols in long lists, `transcription` writes expressions in another graph, and `evaluate`
@@ -20,6 +20,7 @@ pub(crate) mod evaluate;
 pub(crate) mod expr;
 pub(crate) mod function;
 pub(crate) mod graph;
+pub(crate) mod in_time;
 pub(crate) mod limits;
 pub(crate) mod node;
 pub(crate) mod normal_form;

@@ -171,7 +171,7 @@ impl<'g> Frame<'g> {
     pub fn apply(&self, s: usize, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let rates: Vec<(Expr<'g>, Expr<'g>)> = if s == 0 {
             let drift = self.coordinates.iter().copied().zip(self.b0.iter().copied());
-            drift.chain([(self.time, Expr::ONE)]).collect()
+            drift.chain(self.graph.in_time(self.time)).collect()
         } else {
             self.coordinates.iter().copied().zip(self.b.column(s - 1)).collect()
         };

@@ -71,7 +71,7 @@ impl Statics {
         let (x, x_dot) = (frame.coordinates(), equations.velocities());
         let along: Vec<(Expr<'g>, Expr<'g>)> = (x.iter().copied().zip(x_dot.iter().copied()))
             .chain(eta.iter().copied().zip(accelerations.iter().copied()))
-            .chain([(frame.time(), Expr::ONE)])
+            .chain(graph.in_time(frame.time()))
             .collect();
 
         let mut dynamics = equations.inverse_dynamics();
@@ -84,7 +84,7 @@ impl Statics {
             for (a, constraint) in multipliers.constraints().iter().enumerate() {
                 let position = multipliers.is_holonomic(a).then(|| constraint.expression());
                 given.push(match position {
-                    Some(f) if moving.is_empty() => graph.directional(&[f], &[(frame.time(), Expr::ONE)])[0],
+                    Some(f) if moving.is_empty() => graph.directional(&[f], &graph.in_time(frame.time()))[0],
                     Some(f) => graph.directional(&[f], &moving)[0],
                     None => multipliers.velocities()[a],
                 });

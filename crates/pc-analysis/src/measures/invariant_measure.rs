@@ -134,7 +134,7 @@ pub fn invariant_measure<'g>(
         .zip(canonical.velocities().iter().copied())
         .chain(y)
         .chain(z)
-        .chain([(system.frame().time(), Expr::ONE)])
+        .chain(graph.in_time(system.frame().time()))
         .collect();
     let rates = graph.directional(&factors, &along);
     let growth = rates.iter().zip(&factors).map(|(&rate, &factor)| vec![rate / factor]);

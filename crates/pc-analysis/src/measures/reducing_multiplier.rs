@@ -101,5 +101,5 @@ fn depends_on_time(voronets: &Voronets<'_>) -> bool {
     let held = voronets.held();
     let mut parts = voronets.coefficients().nonzero_entries();
     parts.push(held.lagrangian());
-    held.graph().directional(&parts, &[(held.frame().time(), Expr::ONE)]).iter().any(|d| !d.is_zero())
+    held.graph().directional(&parts, &held.graph().in_time(held.frame().time())).iter().any(|d| !d.is_zero())
 }

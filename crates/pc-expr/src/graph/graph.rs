@@ -1,6 +1,6 @@
 //! The graph, which owns the nodes.
 
-use std::cell::RefCell;
+use std::cell::{RefCell, RefMut};
 use std::fmt;
 
 use crate::error::ExprError;
@@ -25,6 +25,8 @@ use crate::graph::node::Folding;
 pub struct Graph {
     dag: RefCell<Dag>,
     budget: Budget,
+    /// The names of functions of time, each with that of its derivative.
+    rates: RefCell<Vec<(String, String)>>,
 }
 
 impl Default for Graph {
@@ -51,18 +53,19 @@ impl Graph {
     }
 
     fn of(folding: Folding, budget: Budget) -> Graph {
-        Graph { dag: RefCell::new(Dag::new(folding, Some(budget.meter()))), budget }
+        let dag = RefCell::new(Dag::new(folding, Some(budget.meter())));
+        Graph { dag, budget, rates: RefCell::default() }
     }
 
     /// An empty graph with the same folding as this one; it draws on a budget that others may share.
     #[must_use]
     pub fn within(self, budget: &Budget) -> Graph {
-        Graph::of(self.folding(), budget.clone())
+        Graph { rates: self.rates.clone(), ..Graph::of(self.folding(), budget.clone()) }
     }
 
     /// An empty graph that draws on the same budget as this one.
     pub fn page(&self, folding: Folding) -> Graph {
-        Graph::of(folding, self.budget.clone())
+        Graph { rates: self.rates.clone(), ..Graph::of(folding, self.budget.clone()) }
     }
 
     /// Runs a named stage of work in this graph. If its budget is spent before or during the work, the
@@ -109,6 +112,10 @@ impl Graph {
     /// Number of divisions so far by an expression that is identically zero.
     pub fn zero_divisions(&self) -> usize {
         self.with(|dag| dag.zero_divisions().len())
+    }
+
+    pub(super) fn rates_mut(&self) -> RefMut<'_, Vec<(String, String)>> {
+        self.rates.borrow_mut()
     }
 
     pub(crate) fn with<R>(&self, f: impl FnOnce(&mut Dag) -> R) -> R {

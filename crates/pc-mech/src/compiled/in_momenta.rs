@@ -77,7 +77,7 @@ impl InMomenta {
             .copied()
             .zip(velocities)
             .chain(eta.iter().copied().zip(accelerations.iter().copied()))
-            .chain([(system.frame().time(), Expr::ONE)])
+            .chain(graph.in_time(system.frame().time()))
             .chain(system.states().iter().copied())
             .collect();
         let parameters: Vec<Expr<'g>> =

@@ -34,6 +34,7 @@ impl Motion {
         if let Form::InMomenta(motion) = &mut self.form {
             return motion.constraint_residuals(t, y, residuals);
         }
+        self.follow_signals(t);
         if let Some(surface) = &mut self.surface {
             surface.residuals(Point { t, y, p: &self.parameters }, residuals);
         }
@@ -52,6 +53,7 @@ impl Motion {
         coordinates: &[usize],
         quasi_velocities: &[usize],
     ) -> Result<(), Failure> {
+        self.follow_signals(t);
         let Some(surface) = &mut self.surface else { return Ok(()) };
         let held = PrescribedComponents { coordinates, quasi_velocities };
         let projected = surface.project_holding((t, y, &self.parameters), &held);
@@ -67,6 +69,7 @@ impl Motion {
     /// If `y` does not have the length of the state.
     pub fn project_velocities(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         assert_eq!(y.len(), self.names.len(), "length of the state");
+        self.follow_signals(t);
         let parameters = &self.parameters;
         let outcome = self.surface.as_mut().map_or(Ok(()), |s| s.project_velocities(t, y, parameters));
         outcome.map_err(|failure| self.failure(failure, t, y))
@@ -88,6 +91,7 @@ impl Motion {
         held: &[usize],
     ) -> Result<(), Failure> {
         assert_eq!(y.len(), self.names.len(), "length of the state");
+        self.follow_signals(t);
         let Some(surface) = &mut self.surface else { return Ok(()) };
         let projected = surface.project_velocities_holding((t, y, &self.parameters), held);
         projected.map_err(|failure| self.failure(failure, t, y))

@@ -21,6 +21,7 @@ impl Motion {
     /// along the constraints to the values of the integrals.
     pub(super) fn project_in_turn(&mut self, t: f64, y: &mut [f64]) -> Result<(), EvaluationFailure> {
         self.quaternions.normalise(y);
+        self.follow_signals(t);
         if let Some(surface) = &mut self.surface {
             surface.project(t, y, &self.parameters)?;
             // A step along the constraints leaves the unit sphere by a distance of the order of its square.
@@ -49,6 +50,11 @@ impl Motion {
             unrolled.forget();
         }
         Ok(())
+    }
+
+    /// Sets inputs to the values of the tables at t; outside of these, where rates fail, they keep the last values.
+    pub(super) fn follow_signals(&mut self, t: f64) {
+        let _ = self.read_signals(t);
     }
 
     fn write_jacobian(
@@ -313,6 +319,7 @@ impl VectorField for Motion {
         if let Form::InMomenta(motion) = &mut self.form {
             return motion.restart(t, y);
         }
+        self.follow_signals(t);
         let Some(kept) = &mut self.kept else { return };
         let mut state = std::mem::take(&mut kept.room.state);
         state.copy_from_slice(y);

@@ -75,7 +75,7 @@ impl<'g> Constraint<'g> {
         }
         let (graph, frame) = (system.graph(), &system.frame);
         let rates = frame.coordinates().iter().copied().zip(frame.velocities(&system.quasi_velocities));
-        let along: Vec<_> = rates.chain([(frame.time(), Expr::ONE)]).collect();
+        let along: Vec<_> = rates.chain(graph.in_time(frame.time())).collect();
         graph.directional(&[self.expression], &along)[0]
     }
 

@@ -117,7 +117,7 @@ impl<'g> Multipliers<'g> {
         shape("the list of operators of the structure coefficients", structure.operators(), free.len())?;
         let x = frame.coordinates().iter().copied().zip(frame.velocities(&free));
         let rates = free.iter().map(|&eta| (eta, graph.symbol(&format!("{eta}'"))));
-        let along: Vec<_> = x.chain(rates).chain([(frame.time(), Expr::ONE)]).collect();
+        let along: Vec<_> = x.chain(rates).chain(graph.in_time(frame.time())).collect();
         let values: Vec<Expr<'g>> = solved.iter().map(|&(_, value)| value).collect();
         let accelerations = graph.directional(&values, &along);
         let primed = solved.iter().map(|(eta, _)| graph.symbol(&format!("{eta}'")));
@@ -187,7 +187,7 @@ impl<'g> Multipliers<'g> {
         let along: Vec<_> = x
             .zip(put(self.equations().velocities()))
             .chain(accelerations.iter().copied())
-            .chain([(system.frame().time(), Expr::ONE)])
+            .chain(graph.in_time(system.frame().time()))
             .collect();
         let values: Vec<Expr<'g>> = solved.iter().map(|&(_, value)| value).collect();
         let rates = graph.directional(&values, &along);

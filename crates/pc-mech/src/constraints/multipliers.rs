@@ -106,7 +106,7 @@ impl<'g> System<'g> {
             .iter()
             .copied()
             .zip(equations.velocities().iter().copied())
-            .chain([(self.frame.time(), Expr::ONE)])
+            .chain(graph.in_time(self.frame.time()))
             .collect();
         let order = self.collecting_order();
         let right: Vec<Expr<'g>> =
@@ -250,7 +250,7 @@ impl<'g> Multipliers<'g> {
         let mut rows = self.coefficients.to_rows();
         let along: Vec<_> = (system.frame.coordinates().iter().copied())
             .zip(self.equations.velocities().iter().copied())
-            .chain([(system.frame.time(), Expr::ONE)])
+            .chain(graph.in_time(system.frame.time()))
             .collect();
         for follower in &self.followers {
             let Ok((row, _)) = follower.coefficients(system) else { continue };

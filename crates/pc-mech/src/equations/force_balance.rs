@@ -111,7 +111,7 @@ impl<'g> System<'g> {
     /// The rates of functions of (t, x, η) that are due to t and x alone, where ẋ are these `velocities`.
     fn drift_of(&self, values: &[Expr<'g>], velocities: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let x = self.frame.coordinates().iter().copied().zip(velocities.iter().copied());
-        let along: Vec<_> = x.chain([(self.frame.time(), Expr::ONE)]).collect();
+        let along: Vec<_> = x.chain(self.graph().in_time(self.frame.time())).collect();
         self.graph().directional(values, &along)
     }
 

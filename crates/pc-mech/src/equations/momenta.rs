@@ -26,7 +26,7 @@ impl<'g> Canonical<'g> {
         let (system, graph) = (self.system(), self.system().graph());
         let x = system.frame().coordinates().iter().copied().zip(self.velocities().iter().copied());
         let states = system.states.iter().copied();
-        let along: Vec<_> = x.chain([(system.frame().time(), Expr::ONE)]).chain(states).collect();
+        let along: Vec<_> = x.chain(graph.in_time(system.frame().time())).chain(states).collect();
         let transport = graph.directional(self.momenta_of_velocities(), &along);
         let rates = graph.substitute(self.right_hand_side(), &self.values_of_momenta());
         let right: Vec<Expr<'g>> =

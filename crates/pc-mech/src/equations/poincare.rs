@@ -107,7 +107,7 @@ impl<'g> System<'g> {
             .iter()
             .copied()
             .zip(velocities.iter().copied())
-            .chain([(t, Expr::ONE)])
+            .chain(graph.in_time(t))
             .chain(system.states.iter().copied())
             .collect();
         let transport = graph.directional(&momenta[..free], &along);

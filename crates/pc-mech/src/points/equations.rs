@@ -54,7 +54,7 @@ impl<'g> PointEquations<'g> {
         }
         let frame = system.frame();
         let along: Vec<_> = (frame.coordinates().iter().copied().zip(frame.velocities(eta)))
-            .chain([(frame.time(), Expr::ONE)])
+            .chain(graph.in_time(frame.time()))
             .collect();
         let bias = |own: &[usize], directions: &[Vector<'g>]| {
             let changes: Vec<Vec<Expr<'g>>> =

@@ -185,8 +185,8 @@ impl<'g> SystemBuilder<'g> {
         Ok(())
     }
 
-    /// Checks that neither the momenta nor the frame depend on a function of time given by a table, since the
-    /// rates of that function would then be needed.
+    /// Checks that neither the momenta nor the frame depend on a function of time of unknown
+    /// [rate](Graph::declare_rate), since that would be needed.
     fn check_signals(
         &self,
         frame: &Frame<'g>,
@@ -199,7 +199,8 @@ impl<'g> SystemBuilder<'g> {
         let momenta = self.graph.gradient(lagrangian, eta);
         let entries = frame.b().nonzero_entries();
         let parts = || momenta.iter().chain(&entries).chain(frame.b0());
-        match self.signals.iter().find(|&&u| parts().any(|part| part.depends_on(u))) {
+        let unknown = |u: &&Expr<'g>| self.graph.rate_of(**u).is_none();
+        match self.signals.iter().filter(unknown).find(|&&u| parts().any(|part| part.depends_on(u))) {
             Some(u) => Err(LagrangianError::SignalInMomentum { input: u.to_string() }.into()),
             None => Ok(()),
         }

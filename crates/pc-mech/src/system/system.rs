@@ -115,9 +115,11 @@ impl<'g> System<'g> {
         &self.signals
     }
 
-    /// The signals u with symbols for their unknown rates u̇.
+    /// The signals u with their rates u̇: those that are declared, or symbols for unknown ones.
     pub fn signal_rates(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
-        self.signals.iter().map(|&u| (u, self.unused(format!("{u}'"), "_"))).collect()
+        let unknown = |u: Expr<'g>| self.unused(format!("{u}'"), "_");
+        let rate = |&u: &Expr<'g>| (u, self.graph().rate_of(u).unwrap_or_else(|| unknown(u)));
+        self.signals.iter().map(rate).collect()
     }
 
     /// The parameters that are not signals, with their values.

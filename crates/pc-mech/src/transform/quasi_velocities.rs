@@ -127,7 +127,7 @@ impl<'g> System<'g> {
         let old = change.old_quasi_velocities(&symbols);
         let x = frame.coordinates().iter().copied().zip(frame.velocities(&symbols));
         let rates = symbols.iter().map(|eta| (*eta, graph.symbol(&format!("{eta}'"))));
-        let along: Vec<_> = x.chain(rates).chain([(frame.time(), Expr::ONE)]).collect();
+        let along: Vec<_> = x.chain(rates).chain(graph.in_time(frame.time())).collect();
         let old_rates = graph.directional(&old, &along);
         let before = self.quasi_velocities.iter().copied().chain(self.accelerations());
         let values: Vec<_> = before.zip(old.iter().copied().chain(old_rates)).collect();

@@ -9,9 +9,10 @@ use crate::assembly::assembler::Assembler;
 use crate::assembly::assembly::Assembly;
 use crate::assembly::bodies::SystemBody;
 use crate::assembly::constraints::Written;
+use crate::assembly::tables;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
-use crate::document::NamedExpression;
+use crate::document::{InputValue, NamedExpression};
 use crate::model::model::Model;
 use crate::names::scope::Scope;
 use crate::names::stage::Stage;
@@ -243,18 +244,27 @@ impl<'g> Assembler<'g, '_> {
         })
     }
 
-    /// Checks that no momentum depends on an input, whose rate is unknown.
+    /// Checks that the rates of inputs are known where they are in use: of those in momenta, and of those whose
+    /// rates the text uses.
     fn check_inputs(&self, system: &System<'g>) -> Result<(), ModelError> {
-        let momenta = system.momenta();
-        let mut inputs = self.model.document().inputs.iter().map(|input| &input.name.text);
-        let moves = |input: &&String| momenta.iter().any(|p| p.depends_on(self.graph.symbol(input)));
-        match inputs.find(moves) {
-            Some(input) => {
-                let error = LagrangianError::SignalInMomentum { input: input.clone() };
-                Err(self.model.document().derivation_error(error.into()))
+        let (document, momenta) = (self.model.document(), system.momenta());
+        for (place, input) in document.inputs.iter().enumerate() {
+            let symbol = self.graph.symbol(&input.name.text);
+            let in_momenta = momenta.iter().any(|p| p.depends_on(symbol));
+            if in_momenta && self.graph.rate_of(symbol).is_none() {
+                let error = LagrangianError::SignalInMomentum { input: input.name.text.clone() };
+                return Err(document.derivation_error(error.into()));
             }
-            None => Ok(()),
+            let InputValue::RateOf(of) = input.value else { continue };
+            let function = self.graph.symbol(&document.inputs[of].name.text);
+            let in_use = || self.scope.rates_in_use.contains(&function);
+            let in_momenta = || momenta.iter().any(|p| p.depends_on(function));
+            let unknown = self.model.parameter_values().is_unknown(document.parameters.len() + place);
+            if unknown && (in_use() || in_momenta()) {
+                return Err(tables::without_rate(document, &document.inputs[of].name));
+            }
         }
+        Ok(())
     }
 
     /// T − V as given by `[lagrangian]`, without the bodies.

@@ -66,7 +66,7 @@ impl<'g> Assembler<'g, '_> {
             let components: Vec<Expr<'g>> =
                 (0..x.len()).map(|i| s.map_or(frame.b0()[i], |s| frame.b()[(i, s)])).collect();
             let mut direction: Vec<_> = x.iter().copied().zip(components.iter().copied()).collect();
-            direction.extend(s.is_none().then_some((frame.time(), Expr::ONE)));
+            direction.extend(s.is_none().then(|| self.graph.in_time(frame.time())).into_iter().flatten());
             let rates = self.graph.directional(&products(rotation), &direction);
             let rates: Vec<f64> = self.graph.evaluate(&rates, values).ok()?;
             let components: Vec<f64> = self.graph.evaluate(&components, values).ok()?;

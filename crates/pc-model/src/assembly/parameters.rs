@@ -10,7 +10,7 @@ use crate::assembly::tables;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::meaning::MeaningError;
-use crate::document::{Document, Expression, InputValue, Name};
+use crate::document::{Document, Expression, Input, InputValue, Name};
 use crate::names::scope::Scope;
 
 /// The values of the parameters of a model, then of its inputs, in the order of declaration. A value given by
@@ -19,6 +19,9 @@ use crate::names::scope::Scope;
 pub struct Parameters {
     values: Vec<f64>,
     formulas: Vec<Formula>,
+    /// The indices of rates, each with that of its input.
+    rates: Vec<(usize, usize)>,
+    t_start: f64,
 }
 
 /// The source of a value.
@@ -30,6 +33,8 @@ enum Formula {
     Of(Box<Interpreter>),
     /// A table, as a function of time; the value is that at the start.
     Table(Arc<Table>),
+    /// The rate of an input whose table is no curve.
+    Unknown,
     /// An invalid expression or table.
     Wrong(ModelError),
 }
@@ -41,7 +46,7 @@ fn written(document: &Document) -> impl Iterator<Item = (&Name, Option<&Expressi
         document.parameters.iter().map(|parameter| (&parameter.name, Some(&parameter.expression)));
     parameters.chain(document.inputs.iter().map(|input| match &input.value {
         InputValue::Constant(expression) => (&input.name, Some(expression)),
-        InputValue::Lists { .. } | InputValue::File(_) => (&input.name, None),
+        InputValue::Lists { .. } | InputValue::File(_) | InputValue::RateOf(_) => (&input.name, None),
     }))
 }
 
@@ -73,13 +78,19 @@ impl Parameters {
                         (table.at(t_start).unwrap_or(f64::NAN), Formula::Table(Arc::new(table)))
                     }
                     Some(Err(error)) => (f64::NAN, Formula::Wrong(error)),
-                    None => (f64::NAN, Formula::Number), // each input is a constant or has a table
+                    None => (f64::NAN, Formula::Number), // a rate, which follows
                 },
             };
             values.push(value);
             formulas.push(formula);
         }
-        let mut parameters = Parameters { values, formulas };
+        let first = document.parameters.len();
+        let rate = |(place, input): (usize, &Input)| match input.value {
+            InputValue::RateOf(of) => Some((first + place, first + of)),
+            _ => None,
+        };
+        let rates = document.inputs.iter().enumerate().filter_map(rate).collect();
+        let mut parameters = Parameters { values, formulas, rates, t_start };
         parameters.follow();
         parameters
     }
@@ -94,7 +105,7 @@ impl Parameters {
         let all = self.formulas.iter().enumerate();
         all.filter_map(|(place, formula)| match formula {
             Formula::Table(table) => Some((place, table)),
-            Formula::Number | Formula::Of(_) | Formula::Wrong(_) => None,
+            Formula::Number | Formula::Of(_) | Formula::Unknown | Formula::Wrong(_) => None,
         })
         .collect()
     }
@@ -110,14 +121,18 @@ impl Parameters {
         self.follow();
     }
 
-    /// Makes parameter number `place` follow a table from `t_start` on, instead of its present value.
+    /// Makes parameter number `place` follow a table from the start on, instead of its present value.
     ///
     /// # Panics
     /// Panics if there is no such parameter.
-    pub(crate) fn set_table(&mut self, place: usize, table: Table, t_start: f64) {
-        self.values[place] = table.at(t_start).unwrap_or(f64::NAN);
-        self.formulas[place] = Formula::Table(Arc::new(table));
+    pub(crate) fn set_table(&mut self, place: usize, table: Table) {
+        self.place_table(place, table);
         self.follow();
+    }
+
+    fn place_table(&mut self, place: usize, table: Table) {
+        self.values[place] = table.at(self.t_start).unwrap_or(f64::NAN);
+        self.formulas[place] = Formula::Table(Arc::new(table));
     }
 
     /// Sets all values, which replace the expressions. Tables stay in use.
@@ -127,7 +142,7 @@ impl Parameters {
     pub fn set_all(&mut self, values: &[f64]) {
         self.values.copy_from_slice(values);
         for formula in &mut self.formulas {
-            if !matches!(formula, Formula::Table(_)) {
+            if !matches!(formula, Formula::Table(_) | Formula::Unknown) {
                 *formula = Formula::Number;
             }
         }
@@ -164,7 +179,26 @@ impl Parameters {
         Ok(())
     }
 
+    /// Whether the value with index `place` is the rate of an input that has none: its table has corners or jumps.
+    pub(crate) fn is_unknown(&self, place: usize) -> bool {
+        matches!(self.formulas.get(place), Some(Formula::Unknown))
+    }
+
     fn follow(&mut self) {
+        for (place, of) in self.rates.clone() {
+            let rate = match &self.formulas[of] {
+                Formula::Table(table) => table.rate(),
+                Formula::Number => {
+                    (self.values[place], self.formulas[place]) = (0.0, Formula::Number);
+                    continue;
+                }
+                _ => None,
+            };
+            match rate {
+                Some(rate) => self.place_table(place, rate),
+                None => (self.values[place], self.formulas[place]) = (0.0, Formula::Unknown),
+            }
+        }
         for (place, formula) in self.formulas.iter_mut().enumerate() {
             if let Formula::Of(program) = formula {
                 let mut value = [f64::NAN];

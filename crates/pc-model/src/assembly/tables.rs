@@ -2,31 +2,37 @@
 
 use std::path::Path;
 
-use pc_mech::{Table, TableError};
+use pc_mech::{KnownRates, Table, TableError};
 
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::source::Place;
-use crate::document::{Document, Input, InputValue, Name, TableFile, read_file_bounded};
+use crate::document::{Document, Input, InputValue, Located, Name, TableFile, read_file_bounded};
 
 const LISTS: &str = "give as many values as times, at least two, with increasing times";
 const COLUMNS: &str = "a file has a line of names, then lines of numbers, with commas between them; the times are in its \
                        column `t`, else in the first, or where `time = \"…\"` says";
 
-/// The table of an input; `None` for a constant.
+/// The table of an input; `None` for a constant, and for a rate, which follows from the table of another.
 ///
 /// # Errors
 /// [`ModelError`] at an entry that is invalid or names an invalid file.
 pub(crate) fn of(document: &Document, input: &Input) -> Result<Option<Table>, ModelError> {
     match &input.value {
-        InputValue::Constant(_) => Ok(None),
-        InputValue::Lists { place, times, values, interpolation } => {
-            let table = Table::new(times.clone(), values.clone(), *interpolation);
+        InputValue::Constant(_) | InputValue::RateOf(_) => Ok(None),
+        InputValue::Lists { place, times, values, known, interpolation } => {
+            let table = Table::with_rates(times.clone(), values.clone(), known, *interpolation);
             table.map(Some).map_err(|error| fault(document, place, error.to_string(), LISTS))
         }
         InputValue::File(file) => from_file(document, file).map(Some),
     }
+}
+
+/// The error for the rate of an input whose table has jumps or corners, given in place of the one in the text.
+pub(crate) fn without_rate(document: &Document, name: &Name) -> ModelError {
+    let what = format!("the rate of `{}` is in use, and its table has corners or jumps", name.text);
+    fault(document, &name.place, what, "give a table with cubic or quintic interpolation")
 }
 
 /// The error for a motion that starts outside a table.
@@ -69,11 +75,18 @@ fn from_file(document: &Document, file: &TableFile) -> Result<Table, ModelError>
     };
     let (asked, asked_place) = (&file.column.value, &file.column.place);
     let value = find(asked).ok_or_else(|| missing(asked, asked_place))?;
+    let given = |asked: &Option<Located<String>>| match asked {
+        Some(Located { value, place }) => find(value).map(Some).ok_or_else(|| missing(value, place)),
+        None => Ok(None),
+    };
+    let (rate, acceleration) = (given(&file.rate)?, given(&file.acceleration)?);
     let time = match &file.time {
         Some(time) => find(&time.value).ok_or_else(|| missing(&time.value, &time.place))?,
         None => find("t").unwrap_or(0),
     };
     let (mut times, mut values, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
+    let list = |column: Option<usize>| column.map(|_| Vec::new());
+    let mut known = KnownRates { rates: list(rate), accelerations: list(acceleration) };
     for (number, line) in rows {
         let row: Vec<&str> = cells(line).collect();
         if row.len() != columns.len() {
@@ -91,9 +104,14 @@ fn from_file(document: &Document, file: &TableFile) -> Result<Table, ModelError>
         };
         times.push(parsed(time)?);
         values.push(parsed(value)?);
+        for (list, column) in [(&mut known.rates, rate), (&mut known.accelerations, acceleration)] {
+            if let (Some(list), Some(column)) = (list, column) {
+                list.push(parsed(column)?);
+            }
+        }
         numbers.push(number + 1);
     }
-    Table::new(times, values, file.interpolation).map_err(|error| match error {
+    Table::with_rates(times, values, &known, file.interpolation).map_err(|error| match error {
         TableError::NotRising { place, before, time } => wrong(format!(
             "line {} of `{name}`: the times must increase, but {time} follows {before}",
             numbers[place]

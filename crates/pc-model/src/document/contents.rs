@@ -2,7 +2,7 @@
 //! resolved.
 
 use pc_expr::Direction;
-use pc_mech::Interpolation;
+use pc_mech::{Interpolation, KnownRates};
 
 use crate::diagnostics::source::{Place, Source};
 use crate::document::draw::Draw;
@@ -102,11 +102,27 @@ pub enum InputValue {
         times: Vec<f64>,
         /// The values.
         values: Vec<f64>,
+        /// The rates and accelerations at the times, if they are listed.
+        known: KnownRates,
         /// The interpolation between the times.
         interpolation: Interpolation,
     },
     /// A column of a file.
     File(TableFile),
+    /// The rate u' of the input u with this index among the inputs, whose table is a curve.
+    RateOf(usize),
+}
+
+impl Input {
+    /// Whether its table is a curve, which has a rate and a second derivative.
+    pub(crate) fn is_curve(&self) -> bool {
+        let (InputValue::Lists { interpolation, .. } | InputValue::File(TableFile { interpolation, .. })) =
+            &self.value
+        else {
+            return false;
+        };
+        matches!(interpolation, Interpolation::Cubic | Interpolation::Quintic)
+    }
 }
 
 /// A column of a file of comma-separated numbers.
@@ -116,6 +132,10 @@ pub struct TableFile {
     pub file: Located<String>,
     /// The column of the values.
     pub column: Located<String>,
+    /// The column of the rates, if there is one.
+    pub rate: Option<Located<String>>,
+    /// The column of the accelerations, if there is one.
+    pub acceleration: Option<Located<String>>,
     /// The column of the times; if left out, the column `t`, or else the first column.
     pub time: Option<Located<String>>,
     /// The interpolation between the times.

@@ -104,7 +104,7 @@ impl Flow {
         }
         let declared = &system.quasi_velocities()[..assembly.declared];
         let all = assembly.quasi_velocities_of(free)?;
-        let reading = Reading::new(assembly, form, &all, transform)?;
+        let reading = Reading::new(assembly, form, &all, transform, model.signals())?;
         let explicit = reading.transform.is_none() && form.matrix.is_none() && !assembly.has_multipliers();
         let slopes = (explicit && model.differentiates_by_parameters())
             .then(|| EventSlopes::new(model, assembly, free, &all))

@@ -1,7 +1,7 @@
 //! Converts states to coordinates, all quasi-velocities and first-order states of a model.
 
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program, SymbolPlaces};
-use pc_mech::{LegendreTransform, MechError, System};
+use pc_mech::{LegendreTransform, MechError, Signals, System};
 
 use crate::assembly::assembly::Assembly;
 use crate::diagnostics::error::ModelError;
@@ -17,6 +17,8 @@ pub(super) struct Reading {
     /// The indices of the free quasi-velocities.
     pub(super) free: Vec<usize>,
     pub(super) parameters: Vec<f64>,
+    /// The inputs that are functions of time.
+    signals: Signals,
     /// The conversion of momenta to quasi-velocities, if the state has momenta.
     pub(super) transform: Option<LegendreTransform>,
     /// Storage space for a state in quasi-velocities.
@@ -45,6 +47,7 @@ impl Reading {
         form: &FreeForm<'g>,
         all: &[Expr<'g>],
         transform: Option<LegendreTransform>,
+        signals: Signals,
     ) -> Result<Reading, ModelError> {
         let (system, graph) = (&form.system, form.system.graph());
         let known: Vec<_> = form.independent.iter().copied().zip(form.values.iter().copied()).collect();
@@ -61,7 +64,7 @@ impl Reading {
                 let frame = system.frame();
                 let along: Vec<_> = (frame.coordinates().iter().copied().zip(frame.velocities(eta)))
                     .chain(eta.iter().copied().zip(accelerations.iter().copied()))
-                    .chain([(frame.time(), Expr::ONE)])
+                    .chain(graph.in_time(frame.time()))
                     .collect();
                 let moving = [system.state(), accelerations].concat();
                 Some(Change {
@@ -78,6 +81,7 @@ impl Reading {
             quasi_velocities: compiled(&system.state(), &all)?,
             free: form.independent.iter().filter_map(place).collect(),
             parameters: system.parameters().iter().map(|&(_, value)| value).collect(),
+            signals,
             transform,
             room: Vec::new(),
             change,
@@ -98,6 +102,7 @@ impl Reading {
     /// The rates of all quasi-velocities of the model at a state that changes at these rates; `None` if the
     /// quasi-velocities of the state are those of the model.
     pub(super) fn rates(&mut self, t: f64, state: &[f64], rates: &[f64]) -> Option<Vec<f64>> {
+        self.follow(t);
         let change = self.change.as_mut()?;
         let moving = self.coordinates..self.coordinates + self.free.len();
         let state = [state, &rates[moving]].concat();
@@ -121,6 +126,7 @@ impl Reading {
     /// # Errors
     /// As for [`read`](Reading::read).
     pub(super) fn read_in(&mut self, t: f64, state: &[f64], all: &mut Vec<f64>) -> Result<(), MechError> {
+        self.follow(t);
         let Some(transform) = &mut self.transform else {
             self.complete(t, state, all);
             return Ok(());
@@ -137,6 +143,7 @@ impl Reading {
 
     /// Converts (x, η, z) with only the free η to (x, η, z) with all η, and writes this to `all`.
     pub(super) fn complete(&mut self, t: f64, free: &[f64], all: &mut Vec<f64>) {
+        self.follow(t);
         let n = self.coordinates;
         all.clear();
         all.extend_from_slice(&free[..n]);
@@ -150,6 +157,7 @@ impl Reading {
     /// # Errors
     /// [`MechError`] if the quasi-velocities have no momenta.
     pub(super) fn write(&mut self, t: f64, all: &[f64]) -> Result<Vec<f64>, MechError> {
+        self.follow(t);
         let (coordinates, rest) = all.split_at(self.coordinates);
         let (eta, states) = rest.split_at(self.quasi_velocities.program().outputs_len());
         let mut state = coordinates.to_vec();
@@ -163,6 +171,16 @@ impl Reading {
         match &mut self.transform {
             Some(transform) => transform.to_momenta(t, &state),
             None => Ok(state),
+        }
+    }
+
+    /// Gives the inputs their values at t; outside their tables, where no motion goes, they keep the last ones.
+    fn follow(&mut self, t: f64) {
+        if self.signals.is_empty() || self.signals.show(t, &mut self.parameters).is_err() {
+            return;
+        }
+        if let Some(transform) = &mut self.transform {
+            transform.parameters_mut()[..self.parameters.len()].copy_from_slice(&self.parameters);
         }
     }
 

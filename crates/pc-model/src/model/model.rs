@@ -189,10 +189,7 @@ impl Model {
         let place = self.document.parameters.len() + index;
         match given {
             GivenInput::Constant(value) => self.parameters.set(place, value),
-            GivenInput::Table(table) => {
-                let t_start = self.document.simulation.start_time();
-                self.parameters.set_table(place, table, t_start);
-            }
+            GivenInput::Table(table) => self.parameters.set_table(place, table),
         }
         Ok(())
     }

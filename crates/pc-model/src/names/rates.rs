@@ -10,7 +10,7 @@ use crate::names::scope::Scope;
 use crate::names::stage::Stage;
 
 impl<'g> Scope<'g, '_> {
-    /// The velocity of a coordinate or of a point.
+    /// The velocity of a coordinate or of a point, or the rate of an input.
     pub(super) fn velocity_of(
         &mut self,
         expression: &Expression,
@@ -18,6 +18,18 @@ impl<'g> Scope<'g, '_> {
         name: &str,
         stage: Stage,
     ) -> Result<Expr<'g>, ModelError> {
+        if let Some(rate) = self.rate_of_input(name) {
+            let refused =
+                matches!(stage, Stage::Parameter | Stage::Body | Stage::Start | Stage::Joint | Stage::Action);
+            return match refused {
+                false => Ok(rate),
+                true => Err(self.error(expression, span, |text| MeaningError::NotHere {
+                    name: text,
+                    place: stage.place(),
+                    allowed: stage.allowed(),
+                })),
+            };
+        }
         let coordinates = &self.document.coordinates;
         let is_point = self.is_point(name);
         if !is_point && !coordinates.iter().any(|c| c.name.text == name) {
@@ -84,10 +96,12 @@ impl<'g> Scope<'g, '_> {
             return Err(self.error(expression, span, fault));
         }
         let value = self.ast(expression, inner, stage)?;
-        let input = |input: &&crate::document::Input| value.depends_on(self.graph.symbol(&input.name.text));
-        if let Some(input) = self.document.inputs.iter().find(input) {
-            let name = input.name.text.clone();
-            return Err(self.error(expression, span, |_| MeaningError::UnknownRate { what: "input", name }));
+        for input in &self.document.inputs {
+            let name = &input.name.text;
+            if value.depends_on(self.graph.symbol(name)) && self.rate_of_input(name).is_none() {
+                let fault = |_| MeaningError::UnknownRate { what: "input", name: name.clone() };
+                return Err(self.error(expression, span, fault));
+            }
         }
         let (x, velocities, eta) = (self.coordinates(), self.velocities(), self.quasi_velocities());
         let moves = |z: &Expr<'g>| value.depends_on(*z);
@@ -103,7 +117,7 @@ impl<'g> Scope<'g, '_> {
             let name = unknown.to_string();
             return Err(self.error(expression, span, |_| MeaningError::UnknownRate { what, name }));
         }
-        rates.push((self.time, Expr::ONE));
+        rates.extend(self.graph.in_time(self.time));
         for (z, state) in self.states().into_iter().zip(&self.document.states) {
             if !value.depends_on(z) {
                 continue;
@@ -120,6 +134,15 @@ impl<'g> Scope<'g, '_> {
             rates.push((z, self.resolve(&state.rate, Stage::Rate)?));
         }
         Ok(self.graph.directional(&[value], &rates)[0])
+    }
+
+    /// The rate u' of an input u, if its table is a curve.
+    pub(super) fn rate_of_input(&mut self, name: &str) -> Option<Expr<'g>> {
+        let input = self.document.inputs.iter().find(|input| input.name.text == name)?;
+        let input = self.graph.symbol(&input.name.text);
+        let rate = self.graph.rate_of(input)?;
+        self.rates_in_use.push(input);
+        Some(rate)
     }
 
     /// The first acceleration or reaction found in a function, if any: these are known along a motion, but not as

@@ -11,7 +11,7 @@ use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::source::{Place, Source};
-use crate::document::{Body, Document, Expression, NamedExpression, TreeBody};
+use crate::document::{Body, Document, Expression, InputValue, NamedExpression, TreeBody};
 use crate::names::functions::call;
 use crate::names::stage::Stage;
 
@@ -69,6 +69,8 @@ pub(crate) struct Scope<'g, 'd> {
     pub(super) points: Option<HashMap<String, Expr<'g>>>,
     /// The forces and torques of reactions that are used, each with a place in the file.
     pub(crate) resultants: Vec<(Expr<'g>, Place)>,
+    /// The inputs whose rates are in use.
+    pub(crate) rates_in_use: Vec<Expr<'g>>,
     /// The components of forces and torques of joints that have been named.
     pub(crate) of_joints: Vec<(Expr<'g>, Place)>,
 }
@@ -84,6 +86,12 @@ impl<'g, 'd> Scope<'g, 'd> {
         let inputs = document.inputs.iter().map(|input| &input.name.text);
         for name in names.chain(inputs).chain(coordinates).chain(quasi_velocities).chain(states) {
             graph.symbol(name);
+        }
+        for input in &document.inputs {
+            if let InputValue::RateOf(of) = input.value {
+                let function = graph.symbol(&document.inputs[of].name.text);
+                graph.declare_rate(function, graph.symbol(&input.name.text));
+            }
         }
         let time = graph.symbol("t");
         let places = document.definitions.iter().enumerate().map(|(place, d)| (d.name.text.as_str(), place));
@@ -101,6 +109,7 @@ impl<'g, 'd> Scope<'g, 'd> {
             arguments: Vec::new(),
             points: None,
             resultants: Vec::new(),
+            rates_in_use: Vec::new(),
             of_joints: Vec::new(),
         }
     }
@@ -320,17 +329,16 @@ impl<'g, 'd> Scope<'g, 'd> {
         let is_point = self.is_point(name);
         match stage {
             _ if is_input => match stage {
-                Stage::Parameter
-                | Stage::Body
-                | Stage::Start
-                | Stage::Joint
-                | Stage::Definition
+                Stage::Parameter | Stage::Body | Stage::Start | Stage::Joint | Stage::Action => refuse(self),
+                Stage::Definition
                 | Stage::Kinematics
                 | Stage::Position
                 | Stage::Inertia
-                | Stage::Action
                 | Stage::Constraint
-                | Stage::Drawing => refuse(self),
+                | Stage::Drawing => match self.rate_of_input(name) {
+                    Some(_) => Ok(self.graph.symbol(name)),
+                    None => refuse(self),
+                },
                 Stage::Rate
                 | Stage::Gravity
                 | Stage::Dynamics

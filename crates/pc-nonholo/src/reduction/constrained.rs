@@ -91,7 +91,7 @@ impl<'g> Constrained<'g> {
 
         let mut rates: Vec<_> = x.iter().copied().zip(self.equations.velocities().iter().copied()).collect();
         rates.extend(all.iter().copied().zip(accelerations.iter().copied()));
-        rates.push((frame.time(), Expr::ONE));
+        rates.extend(graph.in_time(frame.time()));
         rates.extend(self.equations.system().states().iter().copied());
         let transport = graph.directional(&momenta[free..], &rates);
         let reactions: Vec<Expr<'g>> = (free..all.len())

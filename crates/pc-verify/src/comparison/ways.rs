@@ -57,7 +57,7 @@ fn of_maggi<'g>(maggi: &MaggiSheet<'g>, sheet: &Sheet<'g>, time: Expr<'g>, page:
     let velocities: Vec<Expr<'g>> = sheet.rates.iter().map(|&(_, value)| value).collect();
     let x = sheet.coordinates.iter().copied().zip(velocities.iter().copied());
     let eta = sheet.quasi_velocities.iter().copied().zip(accelerations.iter().copied());
-    let along: Vec<_> = x.chain(eta).chain([(time, Expr::ONE)]).collect();
+    let along: Vec<_> = x.chain(eta).chain(page.in_time(time)).collect();
     let second = page.directional(&velocities, &along);
     let moving = sheet.rates.iter().map(|&(symbol, _)| symbol);
     let known: Vec<_> =

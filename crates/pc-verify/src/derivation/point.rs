@@ -200,7 +200,7 @@ impl<'a, T: Number> Point<'a, T> {
             Term::Coordinate(i) => self.x[*i],
             Term::Velocity(i) => self.velocities()?[*i],
             Term::QuasiVelocity(s) => self.quasi_velocity(*s)?,
-            Term::Parameter(j) => T::constant(self.parameter(*j)),
+            Term::Parameter(j) => self.moving_parameter(*j),
             Term::State(j) => self.z[*j],
             Term::Definition(j) => self.definition(*j)?,
             Term::Reaction(a) => {
@@ -242,7 +242,18 @@ impl<'a, T: Number> Point<'a, T> {
         })
     }
 
-    /// The value of a parameter, or of an input at this time; the rate of an input is not known.
+    /// A parameter as it moves in time: along a curve, if it has one for a table.
+    fn moving_parameter(&self, j: usize) -> T {
+        let table = self.text.tables.iter().find(|(place, _)| *place == j).map(|(_, table)| table);
+        let Some((from, curve)) = table.and_then(|table| table.curve_at(self.t.real())) else {
+            return T::constant(self.parameter(j));
+        };
+        let x = self.t - T::constant(from);
+        let value = curve.iter().rev().fold(T::constant(0.0), |sum, &c| T::constant(c) + x * sum);
+        value + T::constant(self.parameter(j) - value.real())
+    }
+
+    /// The value of a parameter, or of an input at this time.
     pub(crate) fn parameter(&self, j: usize) -> f64 {
         match self.text.tables.iter().find(|(place, _)| *place == j) {
             Some((_, table)) => {

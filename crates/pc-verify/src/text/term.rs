@@ -187,7 +187,8 @@ impl Names {
             AstKind::Velocity(name) => {
                 let point = || self.point(name).map(|component| Term::Rate(Box::new(component)));
                 let velocity = place(&self.coordinates, name).map(Term::Velocity);
-                velocity.or_else(point).ok_or_else(|| unknown(name))?
+                let rate = || place(&self.parameters, &format!("{name}'")).map(Term::Parameter);
+                velocity.or_else(rate).or_else(point).ok_or_else(|| unknown(name))?
             }
             AstKind::TotalDerivative(inner) => Term::Rate(boxed(inner)?),
             AstKind::Sum(terms) => {
