@@ -65,6 +65,19 @@ public:
         return say(pc_model_add_input_table, name.c_str(), times.data(), values.data(), times.size(),
                    interpolation.c_str());
     }
+    /// An input by its values and rates at times, and perhaps its accelerations: a smooth function, which may move
+    /// positions and constraints.
+    model &input_curve(const std::string &name, const std::vector<double> &times, const std::vector<double> &values,
+                       const std::vector<double> &rates, const std::vector<double> &accelerations = {})
+    {
+        const std::size_t length = times.size();
+        if (values.size() != length || rates.size() != length ||
+            (!accelerations.empty() && accelerations.size() != length)) {
+            throw std::invalid_argument("an input needs as many values, rates and accelerations as times");
+        }
+        return say(pc_model_add_input_curve, name.c_str(), times.data(), values.data(), rates.data(),
+                   accelerations.empty() ? nullptr : accelerations.data(), length);
+    }
     /// An input by a column of a file.
     model &input_file(const std::string &name, const std::string &path, const std::string &column,
                       const std::string &interpolation = "linear")

@@ -66,6 +66,48 @@ pub unsafe extern "C" fn pc_model_add_input_table(
     unsafe { draft(model, error, "pc_model_add_input_table", write) }
 }
 
+/// Adds an input that is a smooth function of time: `length` values with their rates, and perhaps
+/// accelerations, at increasing times. Between these it is a polynomial of degree 3 that has the
+/// values and rates at both ends, or of degree 5 with the accelerations too; NULL for accelerations
+/// that are not given. Unlike other inputs it may appear in velocities, momenta, constraints and
+/// positions of bodies. The inputs u' and u'' that follow it in the list of inputs are its rates.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_input_curve(
+    model: *mut pc_model,
+    name: *const c_char,
+    times: *const f64,
+    values: *const f64,
+    rates: *const f64,
+    accelerations: *const f64,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let name = unsafe { text(name, "name") }?;
+        let mut put = |key: &'static str, list: *const f64| {
+            // SAFETY: null or `length` numbers, as the preamble demands.
+            let list = unsafe { numbers(list, length, length, key) }?;
+            for &number in list {
+                finite(number, "an entry of the table")?;
+            }
+            draft.add(Section::Inputs, &[name, key], list_of(list));
+            Ok::<(), CallError>(())
+        };
+        put("times", times)?;
+        put("values", values)?;
+        put("rates", rates)?;
+        if !accelerations.is_null() {
+            put("accelerations", accelerations)?;
+        }
+        let interpolation = if accelerations.is_null() { "cubic" } else { "quintic" };
+        draft.add(Section::Inputs, &[name, "interpolation"], quoted(interpolation));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_input_curve", write) }
+}
+
 /// Adds an input whose table is a column of a file of comma-separated numbers, the first line of
 /// which holds the names of the columns; otherwise this is like pc_model_add_input_table. `time` is
 /// the name of the column of times, NULL for "t" or, if there is no such column, for the first one.
@@ -82,27 +124,62 @@ pub unsafe extern "C" fn pc_model_add_input_file(
 ) -> pc_status {
     let write = |draft: &mut Draft| {
         // SAFETY: null or text, as the preamble demands.
-        let (name, path, column, interpolation) = unsafe {
-            (
-                text(name, "name")?,
-                text(path, "path")?,
-                text(column, "column")?,
-                choice(interpolation, "interpolation")?,
-            )
-        };
-        let absolute =
-            std::path::absolute(path).map_err(|source| CallError::Read { path: path.to_owned(), source })?;
-        draft.add(Section::Inputs, &[name, "file"], quoted(&absolute.display().to_string()));
-        draft.add(Section::Inputs, &[name, "column"], quoted(column));
-        if !time.is_null() {
-            // SAFETY: text, as the preamble demands.
-            draft.add(Section::Inputs, &[name, "time"], quoted(unsafe { text(time, "time") }?));
+        unsafe {
+            let name = text(name, "name")?;
+            write_file(draft, name, text(path, "path")?)?;
+            let interpolation = choice(interpolation, "interpolation")?;
+            draft.add(Section::Inputs, &[name, "column"], quoted(text(column, "column")?));
+            if !time.is_null() {
+                draft.add(Section::Inputs, &[name, "time"], quoted(text(time, "time")?));
+            }
+            draft.add(Section::Inputs, &[name, "interpolation"], quoted(interpolation));
         }
-        draft.add(Section::Inputs, &[name, "interpolation"], quoted(interpolation));
         Ok(())
     };
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_add_input_file", write) }
+}
+
+/// Adds an input as pc_model_add_input_curve does, from the columns of a file: of values, of rates,
+/// of accelerations, NULL where these are not given, and of times, as in pc_model_add_input_file.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_input_curve_file(
+    model: *mut pc_model,
+    name: *const c_char,
+    path: *const c_char,
+    column: *const c_char,
+    rate: *const c_char,
+    acceleration: *const c_char,
+    time: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        unsafe {
+            let name = text(name, "name")?;
+            write_file(draft, name, text(path, "path")?)?;
+            draft.add(Section::Inputs, &[name, "column"], quoted(text(column, "column")?));
+            draft.add(Section::Inputs, &[name, "rate"], quoted(text(rate, "rate")?));
+            for (key, column) in [("acceleration", acceleration), ("time", time)] {
+                if !column.is_null() {
+                    draft.add(Section::Inputs, &[name, key], quoted(text(column, key)?));
+                }
+            }
+            let interpolation = if acceleration.is_null() { "cubic" } else { "quintic" };
+            draft.add(Section::Inputs, &[name, "interpolation"], quoted(interpolation));
+        }
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_input_curve_file", write) }
+}
+
+/// The file of an input, by its path from the root: the text of a model has no place.
+fn write_file(draft: &mut Draft, name: &str, path: &str) -> Result<(), CallError> {
+    let absolute =
+        std::path::absolute(path).map_err(|source| CallError::Read { path: path.to_owned(), source })?;
+    draft.add(Section::Inputs, &[name, "file"], quoted(&absolute.display().to_string()));
+    Ok(())
 }
 
 /// The word that says how a table is interpolated; "linear" where it is NULL.

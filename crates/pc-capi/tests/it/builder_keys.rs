@@ -110,7 +110,15 @@ fn everything() -> Model {
         )
     };
     call(add).unwrap();
+    let name = c("cam");
+    // SAFETY: a live model, a text and four lists of two numbers.
+    let add = |error| unsafe {
+        let [times, values] = [&times, &values].map(|list| list.as_ptr());
+        pc_model_add_input_curve(model.0, name.as_ptr(), times, values, values, times, 2, error)
+    };
+    call(add).unwrap();
     say!(model, pc_model_add_input_file, "push", "/x.csv", "u", "s", "hold").unwrap();
+    say!(model, pc_model_add_input_curve_file, "road", "/x.csv", "u", "v", "a", "s").unwrap();
     say!(model, pc_model_add_state, "z", "-z"; 0.25).unwrap();
     say!(model, pc_model_set_gravity, "0", "0", "-9.81").unwrap();
     say!(model, pc_model_add_definition, "twice", "2*m").unwrap();

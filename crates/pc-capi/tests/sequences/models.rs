@@ -125,7 +125,7 @@ unsafe fn say(
     let entries = entries.as_ptr();
     // SAFETY: as promised.
     unsafe {
-        match function % 81 {
+        match function % 83 {
             0..4 => pc_model_add_coordinate(model, a, x, error),
             4..8 => pc_model_set_kinetic(model, b, error),
             8 => pc_model_add_quasi_velocity(model, a, b, x, error),
@@ -199,6 +199,22 @@ unsafe fn say(
                 let word = if yes == 1 { c"hold".as_ptr() } else { ptr::null() };
                 pc_model_add_input_table(model, a, times.as_ptr(), values.as_ptr(), count, word, error)
             }
+            81 => {
+                let (times, values) = ([0.0, 1.0, 2.0 + x], [x, -x, 0.5]);
+                let second = if yes == 1 { values.as_ptr() } else { ptr::null() };
+                let [times, values] = [&times, &values].map(|list| list.as_ptr());
+                pc_model_add_input_curve(model, a, times, values, values, second, count, error)
+            }
+            82 => pc_model_add_input_curve_file(
+                model,
+                a,
+                z,
+                b,
+                b,
+                if yes == 1 { a } else { ptr::null() },
+                b,
+                error,
+            ),
             52 => pc_model_add_input_file(model, a, z, b, ptr::null(), a, error),
             53 => pc_model_set_gravity(model, b, z, b, error),
             54 => pc_model_add_parameter_expression(model, a, b, error),

@@ -39,6 +39,7 @@ mod options_of_run;
 mod patience;
 mod piped;
 mod plots;
+mod prescribed_motion;
 mod print;
 mod program;
 mod project;

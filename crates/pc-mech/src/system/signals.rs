@@ -73,9 +73,8 @@ impl Signals {
         };
         let between @ (from, _) = self.before(next);
         let before = self.between.replace(between);
-        let jumps = |(before, _): (f64, f64)| {
-            self.list.iter().any(|signal| signal.table.jumps_between(before, from))
-        };
+        let jumps =
+            |(before, _): (f64, f64)| self.list.iter().any(|signal| signal.table.jumps_between(before, from));
         before.is_some_and(jumps)
     }
 

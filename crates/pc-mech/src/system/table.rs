@@ -73,7 +73,9 @@ pub enum TableError {
         time: f64,
     },
     /// Rates without interpolation that uses them, or too few of them.
-    #[error("{what} are for the interpolation {by}, and there are as many of them as times: {times}, not {found}")]
+    #[error(
+        "{what} are for the interpolation {by}, and there are as many of them as times: {times}, not {found}"
+    )]
     Rates {
         /// Which rates.
         what: &'static str,
@@ -244,7 +246,10 @@ impl Table {
     pub fn curve_at(&self, t: f64) -> Option<(f64, &Polynomial)> {
         let after = self.times.partition_point(|&time| time <= t);
         let i = after.checked_sub(1)?.min(self.times.len().checked_sub(2)?);
-        self.curves.get(i).map(|curve| (self.times[i], curve)).filter(|_| t <= self.times[self.times.len() - 1])
+        self.curves
+            .get(i)
+            .map(|curve| (self.times[i], curve))
+            .filter(|_| t <= self.times[self.times.len() - 1])
     }
 }
 
@@ -253,7 +258,9 @@ impl Table {
 fn check_finite(times: &[f64], values: &[f64]) -> Result<(), TableError> {
     let mut pairs = times.iter().zip(values).enumerate();
     match pairs.find(|(_, (t, u))| !(t.is_finite() && u.is_finite())) {
-        Some((place, (t, u))) => Err(TableError::NotFinite { place, value: if t.is_finite() { *u } else { *t } }),
+        Some((place, (t, u))) => {
+            Err(TableError::NotFinite { place, value: if t.is_finite() { *u } else { *t } })
+        }
         None => Ok(()),
     }
 }

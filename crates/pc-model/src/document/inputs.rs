@@ -9,7 +9,15 @@ use crate::document::contents::{Input, InputValue, TableFile};
 use crate::document::expression::Name;
 
 const KEYS: &[&str] = &[
-    "times", "values", "rates", "accelerations", "file", "column", "rate", "acceleration", "time",
+    "times",
+    "values",
+    "rates",
+    "accelerations",
+    "file",
+    "column",
+    "rate",
+    "acceleration",
+    "time",
     "interpolation",
 ];
 const TIMES: &str = "times = [0.0, 1.0], values = [0.0, 2.0]";

@@ -125,10 +125,9 @@ impl<'g> Voronets<'g> {
     fn along(&self, i: usize, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
         let dependent = self.dependent().into_iter();
         let rates: Vec<(Expr<'g>, Expr<'g>)> = match i.checked_sub(1) {
-            None => dependent
-                .zip(self.drift.iter().copied())
-                .chain(self.graph().in_time(self.time()))
-                .collect(),
+            None => {
+                dependent.zip(self.drift.iter().copied()).chain(self.graph().in_time(self.time())).collect()
+            }
             Some(i) => dependent
                 .zip(self.coefficients.column(i))
                 .chain([(self.independent()[i], Expr::ONE)])

@@ -111,17 +111,24 @@ class Builder(Generic[M]):
         *,
         times: Sequence[float] | None = None,
         values: Sequence[float] | None = None,
-        interpolation: str = "linear",
+        rates: Sequence[float] | None = None,
+        accelerations: Sequence[float] | None = None,
+        interpolation: str | None = None,
     ) -> Builder[M]:
-        """An input: a number that is constant until it is set, or a table of times and values."""
+        """An input: a number that is constant until it is set, or a table of times and values. With rates, or with rates
+        and accelerations, the table is a smooth function, which may also move positions and constraints."""
         if times is None and values is None:
             return self._put("inputs", (name,), number(0.0 if value is None else value))
         if value is not None or times is None or values is None:
             raise ChetaevError(f"the input `{name}` needs either a value, or times and values")
-        lists = [", ".join(number(float(x)) for x in column) for column in (times, values)]
-        self._put("inputs", (name, "times"), f"[{lists[0]}]")
-        self._put("inputs", (name, "values"), f"[{lists[1]}]")
-        return self._put("inputs", (name, "interpolation"), quoted(interpolation))
+        columns = {"times": times, "values": values, "rates": rates, "accelerations": accelerations}
+        for key, column in columns.items():
+            if column is not None:
+                listed = ", ".join(number(float(x)) for x in column)
+                self._put("inputs", (name, key), f"[{listed}]")
+        smooth = "cubic" if accelerations is None else "quintic"
+        default = "linear" if rates is None else smooth
+        return self._put("inputs", (name, "interpolation"), quoted(interpolation or default))
 
     def define(self, name: str, value: Any) -> Builder[M]:
         """A name for an expression, which later expressions can use."""
