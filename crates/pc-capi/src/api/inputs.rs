@@ -124,17 +124,17 @@ pub unsafe extern "C" fn pc_model_add_input_file(
 ) -> pc_status {
     let write = |draft: &mut Draft| {
         // SAFETY: null or text, as the preamble demands.
-        unsafe {
-            let name = text(name, "name")?;
-            write_file(draft, name, text(path, "path")?)?;
-            let interpolation = choice(interpolation, "interpolation")?;
-            draft.add(Section::Inputs, &[name, "column"], quoted(text(column, "column")?));
-            if !time.is_null() {
-                draft.add(Section::Inputs, &[name, "time"], quoted(text(time, "time")?));
-            }
-            draft.add(Section::Inputs, &[name, "interpolation"], quoted(interpolation));
-        }
-        Ok(())
+        let (name, path, column, time, interpolation) = unsafe {
+            (
+                text(name, "name")?,
+                text(path, "path")?,
+                text(column, "column")?,
+                optional(time, "time")?,
+                choice(interpolation, "interpolation")?,
+            )
+        };
+        let columns = [("column", Some(column)), ("time", time)];
+        write_file(draft, name, path, &columns, interpolation)
     };
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_add_input_file", write) }
@@ -155,31 +155,49 @@ pub unsafe extern "C" fn pc_model_add_input_curve_file(
 ) -> pc_status {
     let write = |draft: &mut Draft| {
         // SAFETY: null or text, as the preamble demands.
-        unsafe {
-            let name = text(name, "name")?;
-            write_file(draft, name, text(path, "path")?)?;
-            draft.add(Section::Inputs, &[name, "column"], quoted(text(column, "column")?));
-            draft.add(Section::Inputs, &[name, "rate"], quoted(text(rate, "rate")?));
-            for (key, column) in [("acceleration", acceleration), ("time", time)] {
-                if !column.is_null() {
-                    draft.add(Section::Inputs, &[name, key], quoted(text(column, key)?));
-                }
-            }
-            let interpolation = if acceleration.is_null() { "cubic" } else { "quintic" };
-            draft.add(Section::Inputs, &[name, "interpolation"], quoted(interpolation));
-        }
-        Ok(())
+        let (name, path, columns) = unsafe {
+            let columns = [
+                ("column", Some(text(column, "column")?)),
+                ("rate", Some(text(rate, "rate")?)),
+                ("acceleration", optional(acceleration, "acceleration")?),
+                ("time", optional(time, "time")?),
+            ];
+            (text(name, "name")?, text(path, "path")?, columns)
+        };
+        let interpolation = if acceleration.is_null() { "cubic" } else { "quintic" };
+        write_file(draft, name, path, &columns, interpolation)
     };
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_add_input_curve_file", write) }
 }
 
-/// The file of an input, by its path from the root: the text of a model has no place.
-fn write_file(draft: &mut Draft, name: &str, path: &str) -> Result<(), CallError> {
+/// The file of an input, by its path from the root: the text of a model has no place. With its columns.
+fn write_file(
+    draft: &mut Draft,
+    name: &str,
+    path: &str,
+    columns: &[(&'static str, Option<&str>)],
+    interpolation: &str,
+) -> Result<(), CallError> {
     let absolute =
         std::path::absolute(path).map_err(|source| CallError::Read { path: path.to_owned(), source })?;
     draft.add(Section::Inputs, &[name, "file"], quoted(&absolute.display().to_string()));
+    for &(key, column) in columns {
+        if let Some(column) = column {
+            draft.add(Section::Inputs, &[name, key], quoted(column));
+        }
+    }
+    draft.add(Section::Inputs, &[name, "interpolation"], quoted(interpolation));
     Ok(())
+}
+
+/// A text that may be left out.
+///
+/// # Safety
+/// `word` is null or text.
+unsafe fn optional<'a>(word: *const c_char, what: &'static str) -> Result<Option<&'a str>, CallError> {
+    // SAFETY: as promised.
+    if word.is_null() { Ok(None) } else { unsafe { text(word, what) }.map(Some) }
 }
 
 /// The word that says how a table is interpolated; "linear" where it is NULL.
