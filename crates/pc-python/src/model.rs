@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use pc_expr::{Cancel, Limits};
-use pc_mech::{EmitOptions, Interpolation, Language, Table};
+use pc_mech::{EmitOptions, Interpolation, KnownRates, Language, Table};
 use pc_model::document::AbsoluteTolerance;
 use pc_model::{Assembly, Builtin, Document, GivenInput, Model, Variables, deep};
 use pc_print::{Form, Layout, Page, Theory, TheoryOptions, displayed_equations, page};
@@ -47,6 +47,8 @@ pub(crate) struct Changes {
 pub(crate) enum Course {
     Constant(f64),
     Table(Vec<f64>, Vec<f64>, String),
+    /// Times, values, rates, and accelerations where they are given.
+    Curve(Vec<f64>, Vec<f64>, Vec<f64>, Option<Vec<f64>>),
 }
 
 impl Course {
@@ -65,6 +67,14 @@ impl Course {
                     }
                 };
                 let table = Table::new(times, values, interpolation);
+                let table = table.map_err(|error| Error::Table { name: name.to_owned(), error })?;
+                Ok(GivenInput::Table(table))
+            }
+            Course::Curve(times, values, rates, accelerations) => {
+                let quintic = accelerations.is_some();
+                let interpolation = if quintic { Interpolation::Quintic } else { Interpolation::Cubic };
+                let known = KnownRates { rates: Some(rates), accelerations };
+                let table = Table::with_rates(times, values, &known, interpolation);
                 let table = table.map_err(|error| Error::Table { name: name.to_owned(), error })?;
                 Ok(GivenInput::Table(table))
             }

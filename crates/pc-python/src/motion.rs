@@ -141,7 +141,7 @@ impl SystemCore {
         };
         let (before, mut is_other) = (tables(&model), false);
         for (name, course) in inputs {
-            is_other |= matches!(course, Course::Table(..));
+            is_other |= matches!(course, Course::Table(..) | Course::Curve(..));
             model.give_input(&name, course.given(&name)?).map_err(Error::from)?;
         }
         is_other |= tables(&model) != before;

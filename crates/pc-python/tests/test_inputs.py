@@ -97,3 +97,28 @@ def test_a_run_beyond_a_table_fails_there() -> None:
     with pytest.raises(chetaev.IntegrationError, match="its table goes from 0 to 1") as raised:
         cart().system().run(inputs={"w": ([0.0, 1.0], [0.0, 1.0])})
     assert raised.value.motion is not None and raised.value.motion.t[-1] <= 1.0
+
+
+def test_a_curve_moves_a_position() -> None:
+    """A table with rates, in the text and of a run alone; one without them has no rate to give."""
+    times, values, rates = [0.0, 1.0, 2.0], [0.0, 0.5, 0.0], [0.0, 0.3, 0.0]
+    text = """
+[inputs]
+road = {{ times = [0.0, 2.0], values = [0.0, 0.0], {} }}
+[coordinates]
+x = 1.0
+[lagrangian]
+kinetic = "(x' + road')^2/2"
+potential = "x^2/2"
+[simulation]
+t_end = 2.0
+"""
+    model = chetaev.Model.from_text(text.format('interpolation = "cubic"'))
+    given = model.system().run(inputs={"road": (times, values, rates)})
+    written = text.replace("times = [0.0, 2.0], values = [0.0, 0.0], {}", f"times = {times}, values = {values}, rates = {rates}, {{}}")
+    assert same(chetaev.Model.from_text(written.format('interpolation = "cubic"')).system().run(), given)
+    still = model.system().run()
+    assert abs(still["x"][-1] - np.cos(2.0)) < 1e-7  # the tolerance of a run is 1e-9
+    assert abs(given["x"][-1] - still["x"][-1]) > 1e-2
+    with pytest.raises(chetaev.ChetaevError, match="the rate of `road` is in use"):
+        model.system().run(inputs={"road": (times, values)})
