@@ -31,6 +31,11 @@ public:
         return model(make(pc_model_parse, text.data(), text.size(), name.c_str()));
     }
     static model from_file(const std::string &path) { return model(make(pc_model_from_file, path.c_str())); }
+    /// A robot in URDF, MJCF or SDF.
+    static model from_robot(const std::string &path, bool floating = false, bool fix_massless = false)
+    {
+        return model(make(pc_model_from_robot, path.c_str(), int(floating), int(fix_massless)));
+    }
     /// A model that comes with the library.
     static model builtin(const std::string &name) { return model(make(pc_model_builtin, name.c_str())); }
     static std::vector<std::string> builtin_names()

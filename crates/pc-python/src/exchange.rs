@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use pc_fmu::{FmiVersion, Fmu, FmuOptions, FmuSolver};
-use pc_model::import::model_of_urdf;
+use pc_model::import::{ImportOptions, model_of_robot};
 use pc_model::{Source, deep};
 use pc_run::files::error::FileError;
 use pc_run::files::target::Target;
@@ -22,8 +22,10 @@ pub(crate) fn text_of_urdf(
     name: String,
     urdf: String,
     floating: bool,
+    fix_massless: bool,
 ) -> Result<(String, Vec<String>), Error> {
-    Ok(model_of_urdf(&Source::new(name, urdf), floating)?)
+    let options = ImportOptions { floating, fix_massless, ..ImportOptions::default() };
+    Ok(model_of_robot(&Source::new(name, urdf), options)?)
 }
 
 /// How an FMU integrates on its own, given by the name of the method and, for fixed steps, their length.

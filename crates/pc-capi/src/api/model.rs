@@ -4,6 +4,7 @@ use std::ffi::{CString, c_char, c_int};
 use std::sync::OnceLock;
 
 use ::pc_model::document::read_file_bounded;
+use ::pc_model::import::{ImportOptions, model_of_robot};
 use ::pc_model::{Builtin, Document, Model, Source};
 
 use crate::ffi::boundary::entry;
@@ -132,6 +133,40 @@ pub unsafe extern "C" fn pc_model_from_file(
         let bytes =
             read_file_bounded(path).map_err(|source| CallError::Read { path: path.to_owned(), source })?;
         let document = Document::parse(Source::from_bytes(path, &bytes))?;
+        // SAFETY: as the preamble demands.
+        unsafe { write(model, of_document(document), "model") }
+    };
+    // SAFETY: `error` is null or memory for a pointer.
+    unsafe { entry(error, read) }
+}
+
+/// Reads a robot in URDF with macros expanded, in MJCF or in SDF, as a model of bodies on joints.
+/// `floating`: whether the root link of a robot in URDF moves freely; otherwise it stands still.
+/// `fix_massless`: whether joints that move no mass are fixed; otherwise they are refused. What a
+/// model cannot express is left out, and said in comments at the head of the text, which
+/// pc_model_text gives.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_from_robot(
+    path: *const c_char,
+    floating: c_int,
+    fix_massless: c_int,
+    model: *mut *mut pc_model,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let read = || {
+        // SAFETY: the pointers are as the preamble demands.
+        unsafe { clear(model, "model") }?;
+        // SAFETY: as the preamble demands.
+        let path = unsafe { text(path, "path") }?;
+        let bytes =
+            read_file_bounded(path).map_err(|source| CallError::Read { path: path.to_owned(), source })?;
+        let options = ImportOptions {
+            floating: floating != 0,
+            fix_massless: fix_massless != 0,
+            ..ImportOptions::default()
+        };
+        let (text, _) = model_of_robot(&Source::from_bytes(path, &bytes), options)?;
+        let document = Document::parse(Source::new(path, &text))?;
         // SAFETY: as the preamble demands.
         unsafe { write(model, of_document(document), "model") }
     };

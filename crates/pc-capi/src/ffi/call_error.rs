@@ -3,6 +3,7 @@
 use std::error::Error;
 use std::ffi::CString;
 
+use ::pc_model::import::UrdfError;
 use ::pc_model::{Category, ModelError, NotForced, UnknownIntegral, UnknownParameter, UnknownStart};
 use pc_expr::{Failure, Spent};
 use pc_mech::MechError;
@@ -88,6 +89,8 @@ pub(crate) enum CallError {
     #[error(transparent)]
     Model(#[from] ModelError),
     #[error(transparent)]
+    Robot(#[from] UrdfError),
+    #[error(transparent)]
     UnknownParameter(#[from] UnknownParameter),
     #[error(transparent)]
     UnknownIntegral(#[from] UnknownIntegral),
@@ -128,6 +131,7 @@ impl CallError {
                 Category::Inconsistent => pc_status::PC_INCONSISTENT_MODEL,
                 Category::Spent => pc_status::PC_LIMIT,
             },
+            CallError::Robot(_) => pc_status::PC_INVALID_MODEL,
             CallError::Verify(VerifyError::Disagreement(_)) => pc_status::PC_DISAGREEMENT,
             CallError::Unsupported { .. } | CallError::Verify(_) => pc_status::PC_UNSUPPORTED,
             CallError::NoSuchModel { .. }

@@ -130,3 +130,23 @@ fn errors_name_the_entry() {
     let unknown = say!(heavy_top(), pc_model_set, "mgl"; 1.0).unwrap_err();
     assert!(unknown.message.ends_with("its parameters are I1, I2, I3, r3, mg"), "{}", unknown.message);
 }
+
+/// A robot of the zoo is read as a file of its text would be, notes and all.
+#[test]
+fn a_robot_is_the_model_of_its_text() {
+    let zoo = |name: &str| c(&format!("{}/../../tests/zoo/{name}.urdf", env!("CARGO_MANIFEST_DIR")));
+    let read = |name: &str, fix_massless| {
+        let (path, mut model) = (zoo(name), ptr::null_mut());
+        // SAFETY: a text and a place for the handle.
+        call(|error| unsafe { pc_model_from_robot(path.as_ptr(), 0, fix_massless, &raw mut model, error) })
+            .map(|()| Model(model))
+    };
+    let arm = read("arm7_gripper", 0).unwrap();
+    assert!(text(&arm).starts_with("# Made of the URDF file "));
+    let system = arm.system(pc_form::PC_POINCARE).unwrap();
+    assert_eq!(system.dim(), 2 * 8, "seven joints, and the finger that the other one follows");
+    let refused = read("refused_massless_tip", 0).err().unwrap();
+    assert_eq!(refused.status, pc_status::PC_INVALID_MODEL);
+    assert!(refused.message.contains("refused_massless_tip.urdf:"), "{}", refused.message);
+    read("refused_massless_tip", 1).unwrap();
+}

@@ -38,7 +38,9 @@ fn nulls_are_refused_everywhere() {
         pc_model_parse(null, 1, null, model_place);
         pc_model_parse(name, 1, null, ptr::null_mut());
         pc_model_from_file(null, model_place);
+        pc_model_from_robot(null, 0, 0, model_place);
         pc_model_from_file(name, ptr::null_mut());
+        pc_model_from_robot(name, 1, 1, ptr::null_mut());
         pc_model_builtin(null, model_place);
         pc_model_builtin(name, ptr::null_mut());
         pc_model_new(null, model_place);

@@ -94,7 +94,9 @@ class Model:
             return cls(file.read(), os.fspath(path))
 
     @classmethod
-    def from_urdf(cls, path: str | os.PathLike[str], *, floating: bool = False) -> Model:
+    def from_urdf(
+        cls, path: str | os.PathLike[str], *, floating: bool = False, fix_massless: bool = False
+    ) -> Model:
         """The model of a robot in URDF with macros expanded, in MJCF or in SDF.
 
         Links become bodies on joints.
@@ -108,6 +110,8 @@ class Model:
             The file.
         floating : bool
             Whether the root link of a robot in URDF moves freely; otherwise it is fixed.
+        fix_massless : bool
+            Whether joints that move no mass are fixed; otherwise they are refused.
 
         Raises
         ------
@@ -115,7 +119,7 @@ class Model:
             If something in the file is wrong; the error gives the position in the file.
         """
         with open(path, encoding="utf-8") as file:
-            text, left_out = _native.text_of_urdf(os.fspath(path), file.read(), floating)
+            text, left_out = _native.text_of_urdf(os.fspath(path), file.read(), floating, fix_massless)
         for remark in left_out:
             warnings.warn(remark, stacklevel=2)
         return cls(text, os.fspath(path))
