@@ -1170,6 +1170,48 @@ pc_status pc_model_set_joint_damping(pc_model *model,
                                      pc_error **error);
 
 /**
+ * Sets the dry friction F of a joint with one coordinate x: the force -F sign(x'), and any force up
+ * to F where the joint is at rest.
+ */
+pc_status pc_model_set_joint_friction(pc_model *model,
+                                      const char *body,
+                                      const char *friction,
+                                      pc_error **error);
+
+/**
+ * Sets stops at the ends of the way of a joint with one coordinate: beyond an end by s, they push
+ * back with stiffness s + damping s'; a null `damping` stands for 0.
+ */
+pc_status pc_model_set_joint_limits(pc_model *model,
+                                    const char *body,
+                                    const char *lower,
+                                    const char *upper,
+                                    const char *stiffness,
+                                    const char *damping,
+                                    pc_error **error);
+
+/**
+ * Sets rigid stops at the ends of the way of a joint with one coordinate x: there x' becomes
+ * -restitution x', and all velocities change by the impulse along the joint. A joint that is pushed
+ * against a stop comes to rest there. It cannot be combined with pc_model_set_joint_limits.
+ */
+pc_status pc_model_set_joint_restitution(pc_model *model,
+                                         const char *body,
+                                         const char *lower,
+                                         const char *upper,
+                                         const char *restitution,
+                                         pc_error **error);
+
+/**
+ * Sets the stiction of a joint with friction: at rest, friction holds it up to this force, which is
+ * at least that of pc_model_set_joint_friction.
+ */
+pc_status pc_model_set_joint_stiction(pc_model *model,
+                                      const char *body,
+                                      const char *stiction,
+                                      pc_error **error);
+
+/**
  * Sets the rotation from the axes of a joint to those of the parent: the 9 entries of its
  * matrix, row by row. It cannot be combined with pc_model_set_joint_turns.
  */

@@ -244,6 +244,18 @@ public:
         return say(pc_model_set_joint_limits, body.c_str(), lower.c_str(), upper.c_str(), stiffness.c_str(),
                    damping.c_str());
     }
+    /// Rigid stops at the ends of the way of a joint, with this coefficient of restitution.
+    model &joint_restitution(const std::string &body, const std::string &lower, const std::string &upper,
+                             const std::string &restitution)
+    {
+        return say(pc_model_set_joint_restitution, body.c_str(), lower.c_str(), upper.c_str(),
+                   restitution.c_str());
+    }
+    /// The force up to which the friction of a joint holds it at rest.
+    model &joint_stiction(const std::string &body, const std::string &stiction)
+    {
+        return say(pc_model_set_joint_stiction, body.c_str(), stiction.c_str());
+    }
     model &joint_rotation(const std::string &body, const matrix &entries)
     {
         return entries_of_body(pc_model_set_joint_rotation, body, entries);

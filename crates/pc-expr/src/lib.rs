@@ -90,7 +90,7 @@ pub use ode::method::Method;
 pub use ode::pattern::Pattern;
 pub use ode::program_field::ProgramField;
 pub use ode::rate_jump::RateJump;
-pub use ode::sliding::{Sliding, SlidingError};
+pub use ode::sliding::{Sliding, SlidingError, SlidingRange};
 pub use ode::switching::Switching;
 pub use ode::varied::VariedSeries;
 pub use ode::vector_field::VectorField;

@@ -21,6 +21,12 @@ pub enum FmuError {
         /// The event.
         event: String,
     },
+    /// Joints with rigid stops or stiction.
+    #[error(
+        "an FMU computes no impacts on rigid stops, and no stiction: give the joints `stop_stiffness` in place of `restitution`, and \
+         leave `stiction` out"
+    )]
+    HeldAtRest,
     /// A form without some of the coordinates.
     #[error("the events use all coordinates, but this form has fewer: use another form")]
     EventsNeedCoordinates,
@@ -86,6 +92,7 @@ impl FmuError {
         match self {
             FmuError::Model(_)
             | FmuError::ResetUnderConstraints { .. }
+            | FmuError::HeldAtRest
             | FmuError::EventsNeedCoordinates
             | FmuError::ExternalForce { .. } => true,
             FmuError::Step { .. }

@@ -30,6 +30,9 @@ pub(crate) fn events<'g>(
     if !assembly.events.is_empty() && form.system.frame().coordinates() != coordinates {
         return Err(FmuError::EventsNeedCoordinates);
     }
+    if whole.is_held_at_rest() {
+        return Err(FmuError::HeldAtRest);
+    }
     let all = whole.state();
     let first_state = all.len() - whole.states().len();
     let in_form = |list: &[Expr<'g>]| graph.substitute(list, known);

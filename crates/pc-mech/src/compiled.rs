@@ -8,8 +8,9 @@
 //! constraints, `forced_motion` the motion under forces that the caller computes. `running_error` bounds rounding
 //! errors, `point` holds the arguments at which functions are evaluated, `chart` detects where quasi-velocities and
 //! velocities no longer determine each other, `change_point` detects where constraints lose rank; `mass_factors` solves
-//! equations with the matrix M alone, `inverse_dynamics` has the forces that accelerations require; `jumps` finds where rates jump, `switches` keeps piecewise rates on one side of
-//! these jumps, with the `surface_slopes` between them, and `failure` says why rates are undefined.
+//! equations with the matrix M alone, `inverse_dynamics` has the forces that accelerations require, `impulse` the jump
+//! of velocities by an impulse; `jumps` finds where rates jump, `switches` keeps piecewise rates on one side of these jumps,
+//! with the `surface_slopes` between them and what `holds` the motion on them, and `failure` says why rates are undefined.
 
 pub(crate) mod change_point;
 pub(crate) mod chart;
@@ -22,7 +23,9 @@ pub(crate) mod running_error;
 
 pub(crate) mod first_order;
 pub(crate) mod forced_motion;
+pub(crate) mod holds;
 pub(crate) mod implicit;
+pub(crate) mod impulse;
 pub(crate) mod in_momenta;
 pub(crate) mod inverse_dynamics;
 pub(crate) mod jumps;

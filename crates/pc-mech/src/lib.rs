@@ -234,6 +234,7 @@ mod transform;
 mod tree;
 
 pub use compiled::forced_motion::ForcedMotion;
+pub use compiled::impulse::ImpulseResponse;
 pub use compiled::inverse_dynamics::InverseDynamics;
 pub use compiled::legendre_transform::LegendreTransform;
 pub use compiled::machine_code::MachineCode;

@@ -4,7 +4,7 @@
 //! which the parts of the assembly share, and then the parts in the order in which `assemble` uses them:
 //! `parameters` and `tables`, `frame`, `definitions`, `start`, `bodies`, the `tree` of bodies on joints and
 //! `external_force`, `brackets`, `joint_reactions`, `constraints` with `constraint_treatment`, `body_reactions` and
-//! the names of a `resultant`, `action`, `event` and `events`, and the quasi-velocities `given` in addition to those of the text;
+//! the names of a `resultant`, `action`, `event` and `events` with the `stops` of joints, and the quasi-velocities `given` in addition to those of the text;
 //! `trial`, `definite`, `inertia` and `orientations` check the start. A `function` and a `drawing` are assembled
 //! separately, on request.
 
@@ -33,6 +33,7 @@ pub(crate) mod parameters;
 pub(crate) mod resultant;
 pub(crate) mod start;
 mod start_with_values;
+pub(crate) mod stops;
 pub(crate) mod tables;
 pub(crate) mod tree;
 pub(crate) mod trial;

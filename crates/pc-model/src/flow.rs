@@ -4,7 +4,7 @@
 //! then `free_form`, the equations in independent quasi-velocities, whose start is given by `formulas`, with `independent_velocities` for
 //! Voronets' equations; then `compile`, which compiles
 //! their motion and evaluates it at the start. `reading` converts states to coordinates, quasi-velocities and first-order states; `events`
-//! evaluates the model's events on these, and `constrained_resets` finds the states that constraints allow after resets. `flow` combines
+//! evaluates the model's events on these, and `constrained_resets` finds the states that constraints allow after resets, `impacts` those after impacts of joints on their stops. `flow` combines
 //! all of this; `tolerances` depend on the scales of a flow; `prototype` gives a flow other values without deriving its equations again.
 
 pub(crate) mod compile;
@@ -15,6 +15,7 @@ pub(crate) mod events;
 pub(crate) mod flow;
 pub(crate) mod formulas;
 pub(crate) mod free_form;
+pub(crate) mod impacts;
 pub(crate) mod independent_velocities;
 pub(crate) mod prototype;
 pub(crate) mod reading;

@@ -52,7 +52,7 @@ pub use assembly::constraint_treatment::{
     ClassifiedConstraint, ConstraintFormulation, ConstraintTreatment, MultiplierFormulation,
 };
 pub use assembly::drawing::{Shape, Spot};
-pub use assembly::event::Event;
+pub use assembly::event::{Event, Impact};
 pub use assembly::external_force::NotForced;
 pub use assembly::parameters::Parameters;
 pub use deep::deep;

@@ -267,6 +267,48 @@ pub unsafe extern "C" fn pc_model_set_joint_limits(
     unsafe { draft(model, error, "pc_model_set_joint_limits", write) }
 }
 
+/// Sets rigid stops at the ends of the way of a joint with one coordinate x: there x' becomes
+/// -restitution x', and all velocities change by the impulse along the joint. A joint that is pushed
+/// against a stop comes to rest there. It cannot be combined with pc_model_set_joint_limits.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_joint_restitution(
+    model: *mut pc_model,
+    body: *const c_char,
+    lower: *const c_char,
+    upper: *const c_char,
+    restitution: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or texts, as the preamble demands.
+        let ends = || Ok(list(&unsafe { [text(lower, "lower")?, text(upper, "upper")?] }));
+        put(draft, (body, "body"), Section::Bodies, &["joint", "limits"], ends)?;
+        // SAFETY: null or text, as the preamble demands.
+        let restitution = || Ok(quoted(unsafe { text(restitution, "restitution") }?));
+        put(draft, (body, "body"), Section::Bodies, &["joint", "restitution"], restitution)
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_joint_restitution", write) }
+}
+
+/// Sets the stiction of a joint with friction: at rest, friction holds it up to this force, which is
+/// at least that of pc_model_set_joint_friction.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_joint_stiction(
+    model: *mut pc_model,
+    body: *const c_char,
+    stiction: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let value = || Ok(quoted(unsafe { text(stiction, "stiction") }?));
+        put(draft, (body, "body"), Section::Bodies, &["joint", "stiction"], value)
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_joint_stiction", write) }
+}
+
 /// Sets the rotation from the axes of a joint to those of the parent: the 9 entries of its
 /// matrix, row by row. It cannot be combined with pc_model_set_joint_turns.
 #[unsafe(no_mangle)]

@@ -154,6 +154,8 @@ fn everything() -> Model {
     say!(model, pc_model_set_joint_damping, "arm", "m").unwrap();
     say!(model, pc_model_set_joint_friction, "arm", "m").unwrap();
     say!(model, pc_model_set_joint_limits, "arm", "-m", "m", "100", "1").unwrap();
+    say!(model, pc_model_set_joint_restitution, "arm", "-m", "m", "0.5").unwrap();
+    say!(model, pc_model_set_joint_stiction, "arm", "2*m").unwrap();
     say!(model, pc_model_set_joint_axis, "arm"; [0.0, 0.0, 1.0].as_ptr()).unwrap();
     let (first, second) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
     say!(model, pc_model_set_joint_axes, "arm"; first.as_ptr(), second.as_ptr()).unwrap();

@@ -188,6 +188,8 @@ unsafe fn say(
             78 => pc_model_set_joint_damping(model, a, b, error),
             79 => pc_model_set_joint_friction(model, a, b, error),
             80 => pc_model_set_joint_limits(model, a, b, z, b, if yes == 1 { z } else { ptr::null() }, error),
+            81 => pc_model_set_joint_restitution(model, a, b, z, b, error),
+            82 => pc_model_set_joint_stiction(model, a, b, error),
             44 => pc_model_keep(model, if yes == 1 { c"energy".as_ptr() } else { a }, error),
             45 => pc_model_project_start(model, yes, error),
             46 => pc_model_observe_reactions(model, yes, error),

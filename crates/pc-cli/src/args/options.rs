@@ -392,9 +392,18 @@ pub struct ImportArguments {
     /// Fix the joints that move no mass, with a note for each; otherwise they are an error
     #[arg(long)]
     pub fix_massless: bool,
+    /// Turn the limits of joints into rigid stops with the coefficient E of restitution, from 0 to 1; otherwise they become comments
+    #[arg(long, value_name = "E", value_parser = restitution)]
+    pub limits: Option<f64>,
     /// The model to write; standard output if it is not given
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+}
+
+/// A number from 0 to 1.
+fn restitution(text: &str) -> Result<f64, String> {
+    let number: Option<f64> = text.parse().ok().filter(|number| (0.0..=1.0).contains(number));
+    number.ok_or_else(|| "a coefficient of restitution is a number from 0 to 1".to_owned())
 }
 
 /// Arguments of `pc export`.

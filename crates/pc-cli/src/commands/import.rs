@@ -33,7 +33,11 @@ pub fn command(arguments: &ImportArguments) -> Result<(), CliError> {
             return Err(CliError::Read { name, source });
         }
     };
-    let options = ImportOptions { floating: arguments.floating, fix_massless: arguments.fix_massless };
+    let options = ImportOptions {
+        floating: arguments.floating,
+        fix_massless: arguments.fix_massless,
+        restitution: arguments.limits,
+    };
     let (text, left_out) = model_of_robot(&source, options)?;
     left_out.iter().for_each(|left| say(format_args!("note: {left}\n")));
     match place {

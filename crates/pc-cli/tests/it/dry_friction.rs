@@ -76,6 +76,31 @@ fn sixteen_joints_stay_where_friction_holds_them() {
         let angle = last(&end, &format!("f{i}"));
         assert!(angle.abs() < 1e-6, "f{i} crept to {angle}");
     }
+    // At rest nothing limits the steps.
+    let steps = end["summary"]["steps"].as_u64().unwrap();
+    assert!(steps < 100, "{steps} steps of a hand at rest");
+}
+
+/// The energy of a double pendulum and the work done against friction: their sum stays, through all reversals and up to
+/// the end, at which both joints rest.
+#[test]
+fn energy_is_lost_to_friction_alone() {
+    let text = "[coordinates]\nu = 1.2\nf = -0.7\n[gravity]\nacceleration = [0, 0, -9.81]\n\
+                [bodies.u]\nmass = 1.0\ncenter = [0, 0, -0.5]\ninertia = [0.01, 0.01, 0.01]\n\
+                joint = { kind = \"revolute\", axis = [0, 1, 0], friction = 0.4, stiction = 0.6 }\n\
+                [bodies.f]\nparent = \"u\"\nmass = 0.5\ncenter = [0, 0, -0.4]\ninertia = [0.01, 0.01, 0.01]\n\
+                joint = { kind = \"revolute\", axis = [0, 1, 0], at = [0, 0, -1], friction = 0.3 }\n\
+                [states]\nwork = { rate = \"0.4*abs(u') + 0.3*abs(f')\" }\n[outputs]\nsum = \"energy + work\"\n";
+    let end = run(text, &["--t-end", "30", "--samples", "301"]);
+    let place = end["columns"].as_array().unwrap().iter().position(|name| name == "sum");
+    let place = place.unwrap();
+    let sums: Vec<f64> =
+        end["rows"].as_array().unwrap().iter().map(|row| row[place].as_f64().unwrap()).collect();
+    // Tolerances of 1e-9, over some hundred steps.
+    sums.iter().for_each(|sum| assert!((sum - sums[0]).abs() < 1e-6, "{sum} after {}", sums[0]));
+    for rate in ["u'", "f'"] {
+        assert!(last(&end, rate).abs() < 1e-9, "{rate} is {}", last(&end, rate));
+    }
 }
 
 /// A wheel geared to a block by x = r φ, with the friction F on the wheel: the block feels F/r.
@@ -95,4 +120,37 @@ fn friction_of_a_geared_joint_holds_the_one_that_it_follows() {
     let expected = (8.0 - 2.0) / 6.0 * 9.0 / 2.0;
     assert!((last(&slides, "block") - expected).abs() < 1e-7);
     assert!((last(&slides, "wheel") - 4.0 * expected).abs() < 1e-6);
+}
+
+/// LuGre's law as docs/modelling.md writes it, under the force `pull`.
+fn bristles(pull: &str) -> String {
+    format!(
+        "[parameters]\n\"σ0\" = 1e5\n\"σ1\" = \"sqrt(σ0)\"\n\"σ2\" = 0.4\nFc = 1.0\nFs = 1.5\nvs = 0.001\n\
+         [bodies.b]\njoint = {{ kind = \"prismatic\", axis = [1, 0, 0] }}\nmass = 1.0\n\
+         [definitions]\ng = \"Fc + (Fs - Fc)*exp(-(b'/vs)^2)\"\nbends = \"b' - σ0*abs(b')*z/g\"\n[states]\nz = {{ rate = \"bends\" }}\n\
+         [forces]\n\"b'\" = \"{pull} - σ0*z - σ1*bends - σ2*b'\"\n"
+    )
+}
+
+/// Before it breaks loose a block moves by x with σ_0 z = F_s (1 − exp(−σ_0 x/F_s)), which is the force; under a slow force
+/// it breaks loose at F_s; under a constant one above F_s it comes to the speed at which g(v) + σ_2 v is the force.
+#[test]
+fn bristles_bend_and_slip() {
+    let bdf = ["--samples", "1501", "--method", "bdf"];
+    let slow = run(&bristles("0.1*t"), &[&["--t-end", "15"], &bdf[..]].concat());
+    let rows = slow["rows"].as_array().unwrap();
+    let at = |row: &Value, place: usize| row[place].as_f64().unwrap();
+    for row in &rows[100..1000] {
+        let (force, x) = (0.1 * at(row, 0), at(row, 1));
+        // The bristles bend at 1e-6 a second, against their damping.
+        let expected = -1.5e-5 * f64::ln(1.0 - (force - 1e-6 * 1e5f64.sqrt()) / 1.5);
+        // g is F_s up to (v/v_s)², and inertia takes less than 1e-4 of the force.
+        assert!((x - expected).abs() < 1e-3 * expected, "{x}, not {expected} at {force}");
+    }
+    let loose = rows.iter().find(|row| at(row, 2) > 1e-3).map_or(f64::NAN, |row| 0.1 * at(row, 0));
+    assert!((1.45..1.5).contains(&loose), "it breaks loose at {loose}");
+    let steady = run(&bristles("2"), &[&["--t-end", "60"], &bdf[..]].concat());
+    // At 2.5 m/s the friction has long been F_c: 2 = 1 + 0.4 v.
+    assert!((last(&steady, "b'") - 2.5).abs() < 1e-6, "{}", last(&steady, "b'"));
+    assert!((1e5 * last(&steady, "z") - 1.0).abs() < 1e-6);
 }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::ode::failure::Failure;
+use crate::ode::sliding::SlidingRange;
 use crate::program::program::Program;
 use crate::time_profile::profile::TimeDependence;
 
@@ -34,6 +35,12 @@ pub trait Switching {
     /// # Errors
     /// The same as for [`rhs`](crate::VectorField::rhs).
     fn rates(&mut self, sides: &[f64], t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), Failure>;
+
+    /// The σ for which a motion on a surface stays there. Where this range is wider than from −1 to 1, or has no end, a
+    /// motion that comes to the surface also stays there if it could go on beside it.
+    fn range(&mut self, _surface: usize, _t: f64, _y: &[f64]) -> SlidingRange {
+        SlidingRange::default()
+    }
 
     /// Returns ∂g/∂t of a surface, and writes ∂g/∂y.
     fn gradient(&mut self, surface: usize, t: f64, y: &[f64], by_state: &mut [f64]) -> f64;

@@ -76,13 +76,13 @@ impl<'g> Equations<'g> {
         Ok((elimination == TreeElimination::ByJoints || is_shorter()).then_some(carried))
     }
 
-    /// Whether forces or energies may be piecewise functions.
+    /// Whether forces or energies may be piecewise functions, or something holds the motion at rest.
     fn has_pieces(&self) -> bool {
         let system = &self.system;
         let rates = system.states.iter().map(|(_, rate)| rate);
         let values: Vec<Expr<'g>> =
             system.forces.iter().chain(rates).copied().chain([self.energy()]).collect();
-        !system.graph().seams(&values).is_empty()
+        !system.holds.is_empty() || !system.graph().seams(&values).is_empty()
     }
 }
 

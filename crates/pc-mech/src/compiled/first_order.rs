@@ -13,6 +13,7 @@ use crate::compiled::options::TreeElimination;
 use crate::compiled::projection::unit_quaternions::UnitQuaternions;
 use crate::equations::poincare::Equations;
 use crate::points::equations::PointEquations;
+use crate::system::holds::Hold;
 use crate::tree::equations::TreeEquations;
 
 /// The system ẏ = g(t, y, w), whose unknowns w solve M(t, y) w = r(t, y) with M symmetric, or, more
@@ -63,6 +64,8 @@ pub(crate) struct FirstOrder<'g> {
     pub(crate) conserved: usize,
     /// The quaternions among the coordinates.
     pub(crate) quaternions: UnitQuaternions,
+    /// What holds velocities at zero.
+    pub(crate) holds: Vec<Hold<'g>>,
 }
 
 /// The left-hand side of p(t, y, w) = r(t, y), which is not linear in w.
@@ -188,6 +191,21 @@ impl<'g> FirstOrder<'g> {
         }
     }
 
+    /// The system with further forces on its quasi-velocities.
+    pub(crate) fn pushed(&self, forces: &[Expr<'g>]) -> FirstOrder<'g> {
+        if let Some(tree) = &self.tree {
+            let further = tree.system.by_link(forces).into_iter().flatten();
+            let further = vec![Expr::ZERO; 3].into_iter().chain(further);
+            let all = tree.dynamics.forces().into_iter().zip(further).map(|(force, more)| force + more);
+            let dynamics = tree.dynamics.clone().with_forces(&all.collect::<Vec<_>>());
+            let tree = Some(Rc::new(TreeEquations { dynamics, system: tree.system.clone() }));
+            return FirstOrder { tree, ..self.clone() };
+        }
+        let mut pushed = self.clone();
+        pushed.right.iter_mut().zip(forces).for_each(|(right, force)| *right += *force);
+        pushed
+    }
+
     /// The nonzero entries of each row of ∂g/∂w with their columns.
     pub(crate) fn coupling(&self) -> Vec<SparseColumn<'g>> {
         self.graph.jacobian(&self.rates, &self.unknowns)
@@ -290,6 +308,7 @@ impl<'g> Equations<'g> {
             observables: system.integrals.iter().chain([&energy]).chain(&system.outputs).cloned().collect(),
             conserved: system.integrals.len() + 1,
             quaternions: UnitQuaternions::of(system),
+            holds: system.holds.clone(),
         }
     }
 }

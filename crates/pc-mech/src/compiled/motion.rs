@@ -11,6 +11,7 @@ use crate::compiled::elimination::numeric::{OF_A_LOOP, Staged};
 use crate::compiled::elimination::schur::Schur;
 use crate::compiled::elimination::symbolic::Unrolled;
 use crate::compiled::failure::EvaluationFailure;
+use crate::compiled::holds::Holds;
 use crate::compiled::legendre_transform::LegendreTransform;
 use crate::compiled::machine_code::MachineCode;
 use crate::compiled::options::{CompileOptions, TreeElimination};
@@ -124,6 +125,8 @@ pub(crate) struct Switches {
     pub(super) follows_tables: bool,
     /// The motion on sides between −1 and 1, for observables that depend on the side.
     pub(super) observing: Option<Box<Motion>>,
+    /// What holds the motion on each surface.
+    pub(super) holds: Holds,
     /// The sides on which the motion is held, if it is held.
     pub(super) sides: Option<Vec<f64>>,
     /// The motion along these surfaces, made on first use.

@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use pc_expr::{
-    Evaluator, Expr, Failure, Graph, Normals, Program, Sliding, SlidingError, Surface, Switching,
-    TaylorSeries, TimeDependence, VariedSeries, VectorField,
+    Evaluator, Expr, Failure, Graph, Normals, Program, Sliding, SlidingError, SlidingRange, Surface,
+    Switching, TaylorSeries, TimeDependence, VariedSeries, VectorField,
 };
 
 use crate::compiled::compile::LONGEST_ELIMINATION;
 use crate::compiled::first_order::FirstOrder;
+use crate::compiled::holds::Holds;
 use crate::compiled::motion::{Along, Form, Motion, Switches};
 use crate::compiled::options::CompileOptions;
 use crate::compiled::surface_slopes::SurfaceSlopes;
@@ -29,7 +30,9 @@ impl<'g> FirstOrder<'g> {
     /// # Errors
     /// As for [`Program::new`].
     pub(crate) fn switches(&self, options: &CompileOptions) -> Result<Option<Switches>, MechError> {
-        let held = self.graph.held(&self.terms(), &self.passing());
+        let placed = self.place_holds();
+        let pushed = self.pushed(&placed.forces);
+        let held = self.graph.held_on(&pushed.terms(), &self.passing(), &placed.surfaces);
         if held.surfaces.is_empty() || held.surfaces.len() > MOST {
             return Ok(None);
         }
@@ -44,10 +47,11 @@ impl<'g> FirstOrder<'g> {
             varying: self.varying.iter().copied().chain(sides).collect(),
             observables: Vec::new(),
             conserved: 0,
-            ..self.with_terms(&held.values)
+            ..pushed.with_terms(&held.values)
         };
         let mut functions: Vec<Expr<'g>> = held.surfaces.iter().map(|surface| surface.function).collect();
-        let names = written_out(self.graph, &held.surfaces);
+        let mut names = written_out(self.graph, &held.surfaces);
+        placed.gaps.iter().for_each(|(surface, gap)| names[*surface].clone_from(gap));
         let motion = system.compile_piece(options, LONGEST_ELIMINATION)?;
         if contains(self.graph, &functions, &self.unknowns) {
             let Form::Unrolled(_) = motion.form else { return Ok(None) };
@@ -61,6 +65,7 @@ impl<'g> FirstOrder<'g> {
             observing: observing.map(Box::new),
             motion: Box::new(motion),
             slopes: SurfaceSlopes::new(&system, &functions, options.parameter_jacobian)?,
+            holds: Holds::new(&system, &placed, held.surfaces.len())?,
             follows_tables: contains(self.graph, &functions, &self.varying),
             functions: Evaluator::new(
                 Program::new(self.graph, &system.inputs(&[]), &functions)?,
@@ -198,6 +203,7 @@ impl Switches {
             self.functions(t, y, &mut functions);
             sides = functions.iter().map(|g| if *g < 0.0 { -1.0 } else { 1.0 }).collect();
         }
+        let ranges: Vec<SlidingRange> = (0..sides.len()).map(|surface| self.range(surface, t, y)).collect();
         let mut along = sides.clone();
         let mut normal = vec![0.0; y.len()];
         let mut rates = vec![0.0; y.len()];
@@ -210,8 +216,11 @@ impl Switches {
                 let rate = by_time + normal.iter().zip(&rates).map(|(slope, rate)| slope * rate).sum::<f64>();
                 if known { rate } else { f64::NAN }
             });
-            let reach = AT_ONCE * t.abs() * below.min(-above);
-            if above < 0.0 && below > 0.0 && functions[surface].abs() <= reach {
+            let (meets, fastest) = match ranges[surface] == SlidingRange::default() {
+                true => (above < 0.0 && below > 0.0, below.min(-above)),
+                false => (above < below, (below - above) / 2.0),
+            };
+            if meets && functions[surface].abs() <= AT_ONCE * t.abs() * fastest {
                 along[surface] = 0.0;
             }
         }
@@ -220,7 +229,7 @@ impl Switches {
         }
         let Sliding { surfaces, weights, .. } = Sliding::of(self, &along, t, y).ok()?;
         surfaces.iter().zip(weights).for_each(|(&surface, weight)| along[surface] = weight);
-        along.iter().all(|side| side.abs() <= 1.0 + ADDS_UP).then_some(along)
+        along.iter().zip(&ranges).all(|(&side, range)| range.holds(side, ADDS_UP)).then_some(along)
     }
 
     /// The rates of the motion on the sides held.
@@ -231,6 +240,7 @@ impl Switches {
         match self.sliding() {
             Some(sides) => {
                 ydot.copy_from_slice(&Sliding::of(self, &sides, t, y)?.rates);
+                self.holds.still(&sides).for_each(|component| ydot[component] = 0.0);
                 Ok(())
             }
             None => self.motion.rhs(t, y, ydot),
@@ -348,9 +358,13 @@ impl Switches {
         // A surface contains the sides of those before it.
         for _ in 0..self.names.len() {
             self.functions(t, y, &mut values);
-            let sides: Vec<f64> = values.iter().map(|g| if *g < 0.0 { -1.0 } else { 1.0 }).collect();
-            self.set(&sides);
+            self.set(&self.beside(&values));
         }
+    }
+
+    /// The sides on which f is evaluated where the motion is on these sides, or the functions have these values.
+    fn beside(&self, sides: &[f64]) -> Vec<f64> {
+        sides.iter().enumerate().map(|(surface, &side)| self.holds.beside(surface, side)).collect()
     }
 
     /// The Taylor series of the motion along the surfaces whose sides are 0, with its derivatives with respect
@@ -374,7 +388,7 @@ impl Switches {
                 series: VariedSeries::default(),
             });
         }
-        let above: Vec<f64> = sides.iter().map(|side| if *side < 0.0 { -1.0 } else { 1.0 }).collect();
+        let above = self.beside(sides);
         // The remainder of forces that cancel is compared with these.
         let mut beside = vec![f64::NAN; y.len()];
         self.rates(&above, t, y, &mut beside)?;
@@ -432,8 +446,7 @@ impl Switching for Switches {
     fn hold(&mut self, sides: Option<&[f64]>) {
         self.sides = sides.map(<[f64]>::to_vec);
         if let Some(sides) = sides {
-            let above: Vec<f64> = sides.iter().map(|side| if *side < 0.0 { -1.0 } else { 1.0 }).collect();
-            self.set(&above);
+            self.set(&self.beside(sides));
         }
     }
 
@@ -450,6 +463,10 @@ impl Switching for Switches {
     fn rates(&mut self, sides: &[f64], t: f64, y: &[f64], rates: &mut [f64]) -> Result<(), Failure> {
         self.set(sides);
         self.motion.rhs(t, y, rates)
+    }
+
+    fn range(&mut self, surface: usize, t: f64, y: &[f64]) -> SlidingRange {
+        self.holds.range(surface, (t, y, &self.motion.parameters))
     }
 
     fn gradient(&mut self, surface: usize, t: f64, y: &[f64], by_state: &mut [f64]) -> f64 {

@@ -306,6 +306,7 @@ impl<'g> Multipliers<'g> {
         };
         FirstOrder {
             state: system.state_with(momenta),
+            holds: Vec::new(),
             parameters: system.parameters.clone(),
             unknowns: eta.to_vec(),
             multipliers: 0,
@@ -343,6 +344,7 @@ impl<'g> Multipliers<'g> {
         };
         Ok(FirstOrder {
             state: system.state_with(momenta),
+            holds: Vec::new(),
             parameters: system.parameters.clone(),
             unknowns,
             mass,

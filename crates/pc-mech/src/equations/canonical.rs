@@ -366,6 +366,7 @@ impl<'g> Canonical<'g> {
             mass: self.legendre.mass.clone(),
             implicit,
             right,
+            holds: Vec::new(),
             rates: graph.shorten(&rates, &system.collecting_order()),
             collected_by: self.momenta.iter().copied().chain(parameters).collect(),
             observables: Vec::new(),

@@ -64,6 +64,7 @@ impl<'g> SystemBuilder<'g> {
         graph.check(&self.states.iter().map(|&(_, rate)| rate).collect::<Vec<_>>())?;
         graph.check(&frame.b().nonzero_entries())?;
         graph.check(frame.b0())?;
+        let holds = self.tree.as_ref().map(Tree::holds).unwrap_or_default();
         let unit_quaternions = self.tree.as_ref().map(Tree::quaternions).unwrap_or_default();
         let acceleration = self.gravity.unwrap_or_default();
         let gravity = std::array::from_fn(|i| acceleration.get(i).copied().unwrap_or(Expr::ZERO));
@@ -82,6 +83,7 @@ impl<'g> SystemBuilder<'g> {
             bodies,
             gravity,
             unit_quaternions,
+            holds,
             tree,
         })
     }

@@ -5,6 +5,7 @@ use pc_expr::{Expr, Graph, SymbolPlaces};
 
 use crate::error::{MechError, shape};
 use crate::system::bodies::velocity::Bodies;
+use crate::system::holds::Hold;
 use crate::system::states::check_no_state;
 use crate::tree::system::TreeSystem;
 use crate::tree::tree::Tree;
@@ -32,6 +33,8 @@ pub struct System<'g> {
     pub(crate) gravity: [Expr<'g>; 3],
     /// The quaternions of joints, each of four coordinates.
     pub(crate) unit_quaternions: Vec<[Expr<'g>; 4]>,
+    /// The holds of its joints.
+    pub(crate) holds: Vec<Hold<'g>>,
     /// The bodies joined by joints, if nothing else in the system has inertia.
     pub(crate) tree: Option<Box<TreeSystem<'g>>>,
 }
@@ -96,6 +99,12 @@ impl<'g> System<'g> {
     /// motions are [projected](pc_expr::VectorField::project) onto |q| = 1.
     pub fn unit_quaternions(&self) -> &[[Expr<'g>; 4]] {
         &self.unit_quaternions
+    }
+
+    /// Whether joints are [held at rest](crate::Joint::ends) by stops, or by [stiction](crate::Joint::stiction): forces that
+    /// act at rest only, so that they are no part of Q.
+    pub fn is_held_at_rest(&self) -> bool {
+        !self.holds.is_empty()
     }
 
     /// The [tree](System::tree), if its equations are too long to be written out as a whole; they are then derived,
@@ -242,6 +251,7 @@ impl<'g> System<'g> {
             states: self.states.into_iter().map(|(z, rate)| (z, one(rate))).collect(),
             bodies: self.bodies.map(&put),
             gravity: self.gravity.map(one),
+            holds: self.holds.iter().map(|hold| hold.map(one)).collect(),
             tree: None,
             ..self
         }

@@ -3,6 +3,7 @@
 use pc_expr::Expr;
 
 use crate::system::bodies::velocity::BodyVelocity;
+use crate::system::holds::Hold;
 use crate::tree::joint::Drive;
 use crate::tree::kinematics::Motions;
 use crate::tree::spatial::{Vector, add, apply, apply_transpose, cross, dot};
@@ -44,6 +45,23 @@ impl<'g> Tree<'g> {
             }
         }
         forces
+    }
+}
+
+impl<'g> Tree<'g> {
+    /// What holds joints at rest: stiction, and rigid stops at both ends.
+    pub(crate) fn holds(&self) -> Vec<Hold<'g>> {
+        let of_drive = |(drive, x, rate): (Drive<'g>, Expr<'g>, Expr<'g>)| {
+            let ratio = drive.stiction.map(|size| size / drive.friction);
+            let sticks = ratio.map(|ratio| Hold::Stiction { rate, ratio });
+            let stops = drive.ends.map(|[lower, upper]| {
+                let way = upper - lower;
+                let below = Hold::Stop { gap: x - lower, rate, way };
+                [below, Hold::Stop { gap: upper - x, rate: -rate, way }]
+            });
+            sticks.into_iter().chain(stops.into_iter().flatten())
+        };
+        self.drives().flat_map(of_drive).collect()
     }
 }
 

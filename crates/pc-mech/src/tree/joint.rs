@@ -47,8 +47,12 @@ pub(crate) struct Drive<'g> {
     pub(crate) damping: Expr<'g>,
     /// The size F of Coulomb's force −F sign x'.
     pub(crate) friction: Expr<'g>,
+    /// The force F_s up to which friction holds the joint at rest, if it is larger than F.
+    pub(crate) stiction: Option<Expr<'g>>,
     /// The stops on both sides.
     pub(crate) stops: Option<Stops<'g>>,
+    /// The two ends of its way, where rigid stops hold it.
+    pub(crate) ends: Option<[Expr<'g>; 2]>,
 }
 
 /// Stops at the ends of the way of a joint with the coordinate x. Beyond an end by s, they push back with k s + d s'.
@@ -74,8 +78,15 @@ impl<'g> Stops<'g> {
 }
 
 impl<'g> Drive<'g> {
-    const NONE: Drive<'static> =
-        Drive { armature: Expr::ZERO, spring: None, damping: Expr::ZERO, friction: Expr::ZERO, stops: None };
+    const NONE: Drive<'static> = Drive {
+        armature: Expr::ZERO,
+        spring: None,
+        damping: Expr::ZERO,
+        friction: Expr::ZERO,
+        stiction: None,
+        stops: None,
+        ends: None,
+    };
 
     /// Its first part, named, if it has any.
     pub(crate) fn part(&self) -> Option<&'static str> {
@@ -84,7 +95,8 @@ impl<'g> Drive<'g> {
             Drive { spring: Some(_), .. } => Some("spring"),
             Drive { damping, .. } if !damping.is_zero() => Some("damping"),
             Drive { friction, .. } if !friction.is_zero() => Some("friction"),
-            Drive { stops: Some(_), .. } => Some("limits"),
+            Drive { stiction: Some(_), .. } => Some("stiction"),
+            Drive { stops: Some(_), .. } | Drive { ends: Some(_), .. } => Some("limits"),
             _ => None,
         }
     }
@@ -95,6 +107,8 @@ impl<'g> Drive<'g> {
             spring: self.spring.map(|(stiffness, rest)| (put(stiffness), put(rest))),
             damping: put(self.damping),
             friction: put(self.friction),
+            stiction: self.stiction.map(put),
+            ends: self.ends.map(|ends| ends.map(put)),
             stops: self.stops.map(|stops| Stops {
                 lower: put(stops.lower),
                 upper: put(stops.upper),
@@ -250,6 +264,22 @@ impl<'g> Joint<'g> {
     #[must_use]
     pub fn friction(self, size: impl Into<Expr<'g>>) -> Joint<'g> {
         Joint { drive: Drive { friction: size.into(), ..self.drive }, ..self }
+    }
+
+    /// The same joint with [friction](Joint::friction) of the size F that holds it at rest up to a larger force F_s, the
+    /// `size` of its stiction.
+    #[must_use]
+    pub fn stiction(self, size: impl Into<Expr<'g>>) -> Joint<'g> {
+        Joint { drive: Drive { stiction: Some(size.into()), ..self.drive }, ..self }
+    }
+
+    /// The same joint, revolute, prismatic or screw, with rigid stops at the two ends of its way: at rest there, it is
+    /// held as long as it is pushed against them. How it rebounds when it arrives with a velocity is up to an event
+    /// with the [response](crate::ImpulseResponse) to an impulse.
+    #[must_use]
+    pub fn ends(self, [lower, upper]: [impl Into<Expr<'g>>; 2]) -> Joint<'g> {
+        let ends = Some([lower.into(), upper.into()]);
+        Joint { drive: Drive { ends, ..self.drive }, ..self }
     }
 
     /// The same joint, revolute, prismatic or screw, with stops at the two ends of its way: where its coordinate x is

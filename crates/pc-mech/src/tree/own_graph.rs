@@ -33,6 +33,7 @@ impl<'g> System<'g> {
             outputs: named(&self.outputs),
             bodies: self.bodies.map(all),
             gravity: self.gravity.map(put),
+            holds: self.holds.iter().map(|hold| hold.map(put)).collect(),
             unit_quaternions: self.unit_quaternions.iter().map(|q| q.map(put)).collect(),
             tree,
         }

@@ -146,10 +146,17 @@ impl<'g> Tree<'g> {
 
     /// The drives of joints with one coordinate, each with x and η of its joint.
     pub(crate) fn drives(&self) -> impl Iterator<Item = (Drive<'g>, Expr<'g>, Expr<'g>)> {
-        self.bodies.iter().zip(&self.own).filter_map(|(body, own)| {
-            let (x, eta) = self.links.get(own.start).filter(|_| own.len() == 1)?.hinge.single()?;
+        self.bodies.iter().enumerate().filter_map(|(place, body)| {
+            let (x, eta) = self.way_of(place)?;
             Some((body.joint.drive, x, eta))
         })
+    }
+
+    /// The coordinate of the joint of a body, by its index, and the velocity of this coordinate, if the joint has exactly
+    /// one; of a joint that follows another, as functions of the coordinate and the velocity of that one.
+    pub fn way_of(&self, body: usize) -> Option<(Expr<'g>, Expr<'g>)> {
+        let own = self.own.get(body).filter(|own| own.len() == 1)?;
+        self.links.get(own.start)?.hinge.single()
     }
 
     /// The index of a body in the order of declaration.

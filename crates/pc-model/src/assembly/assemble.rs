@@ -153,6 +153,7 @@ impl<'g> Assembler<'g, '_> {
         let bodies = self.bodies(&eta, &x_dot)?;
         let changing_masses = self.changing_masses()?;
         let tree = self.tree(&x_dot)?;
+        let stops = self.stops(tree.as_ref())?;
         let gravity = self.gravity()?;
         let dissipation = self.dissipation(&x_dot)?;
         let rates = self.state_rates(&x_dot)?;
@@ -223,8 +224,10 @@ impl<'g> Assembler<'g, '_> {
             self.treatment(&system, &constraints, &x_dot, &values, (t_start, &mut start), prescribed)?;
         let independent = self.model.independent().iter().map(|name| self.graph.symbol(name)).collect();
         let constraints = constraints.with_independent(independent);
-        let events =
+        let mut events =
             self.events(crossings, &x_dot, &constraints, system.frame().coordinates().len() + eta.len())?;
+        events.extend(self.impacts(&stops)?);
+        self.check_joints(&stops, &system, &start)?;
         let action = self.action()?;
         self.scope.look_at_unused()?;
         self.scope.look_at_functions()?;

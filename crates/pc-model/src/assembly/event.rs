@@ -15,4 +15,24 @@ pub struct Event<'g> {
     pub terminal: bool,
     /// The components of (x, η, z) that are reset, with their new values as functions of the state before the event.
     pub resets: Vec<(usize, Expr<'g>)>,
+    /// The impact that it is, if it changes the velocities by an impulse.
+    pub impact: Option<Impact<'g>>,
+}
+
+/// An impact on a stop: the rate v of the gap before it becomes −e v, and all velocities change by the impulse along it.
+#[derive(Clone, Debug)]
+pub struct Impact<'g> {
+    /// The rate v of the gap, negative before the impact.
+    pub rate: Expr<'g>,
+    /// e
+    pub restitution: Expr<'g>,
+    /// The distance between the two ends of the way, the size of gaps.
+    pub way: Expr<'g>,
+}
+
+impl Event<'_> {
+    /// Whether the state is another one after it.
+    pub fn changes_state(&self) -> bool {
+        !self.resets.is_empty() || self.impact.is_some()
+    }
 }

@@ -41,6 +41,7 @@ impl<'g> Assembler<'g, '_> {
                 direction: event.direction.as_ref().map_or(Direction::Both, |direction| direction.value),
                 terminal: event.terminal.as_ref().is_some_and(|terminal| terminal.value),
                 resets,
+                impact: None,
             });
         }
         Ok(events)

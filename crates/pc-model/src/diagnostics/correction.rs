@@ -40,6 +40,7 @@ impl MeaningError {
             | MeaningError::ForceNotDetermined { .. }
             | MeaningError::JointForceUnknown { .. }
             | MeaningError::NoForm { .. }
+            | MeaningError::OfJoint { .. }
             | MeaningError::Derivation { .. } => Category::Inconsistent,
             _ => Category::Text,
         }
@@ -105,7 +106,7 @@ impl MeaningError {
                  these, of coordinates, parameters and t"
                     .into()
             }
-            MeaningError::NoForm { help, .. } => (*help).into(),
+            MeaningError::NoForm { help, .. } | MeaningError::OfJoint { help, .. } => (*help).into(),
             MeaningError::KinematicsMissing { coordinate } => {
                 format!("add `{coordinate} = \"…\"`, affine in the quasi-velocities")
             }

@@ -153,6 +153,14 @@ pub enum MeaningError {
         /// The forms that exist for it.
         help: &'static str,
     },
+    /// Numbers of a joint that contradict each other or the start.
+    #[error("{message}")]
+    OfJoint {
+        /// What is wrong.
+        message: String,
+        /// What would be right.
+        help: &'static str,
+    },
     /// A coordinate without kinematics, although other coordinates have kinematics.
     #[error("[kinematics] does not say what `{coordinate}'` is")]
     KinematicsMissing {

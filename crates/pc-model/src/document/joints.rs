@@ -77,8 +77,12 @@ pub struct Drive {
     pub damping: Option<Expression>,
     /// The size F of the force −F sign x'.
     pub friction: Option<Expression>,
+    /// The force F_s ≥ F up to which friction holds at rest; F if left out.
+    pub stiction: Option<Expression>,
     /// The ends of the way of x, at which there are stops.
     pub limits: Option<[Expression; 2]>,
+    /// The coefficient e of restitution of rigid stops: at an end x' becomes −e x'.
+    pub restitution: Option<Expression>,
     /// The stiffness k of the stops: beyond an end by s, they push back with k s + d s'.
     pub stop_stiffness: Option<Expression>,
     /// d; 0 if left out.

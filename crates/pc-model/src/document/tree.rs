@@ -30,7 +30,9 @@ const JOINT_KEYS: &[&str] = &[
     "rest",
     "damping",
     "friction",
+    "stiction",
     "limits",
+    "restitution",
     "stop_stiffness",
     "stop_damping",
 ];
@@ -43,7 +45,9 @@ const OF_SINGLE: &[&str] = &[
     "rest",
     "damping",
     "friction",
+    "stiction",
     "limits",
+    "restitution",
     "stop_stiffness",
     "stop_damping",
 ];
@@ -106,6 +110,31 @@ fn hung(item: &Item<'_>, table: &Table<'_>) -> Result<TreeBody, ModelError> {
     })
 }
 
+/// Checks that the entries are there without which this one of a drive has no effect, and none that excludes it.
+fn check_companions(part: &Item<'_>, drive: &Drive) -> Result<(), ModelError> {
+    let has_stops = drive.restitution.is_some() || drive.stop_stiffness.is_some();
+    let (without, example, is_there) = match part.key() {
+        "rest" => ("stiffness", "stiffness = 10.0", drive.stiffness.is_some()),
+        "stiction" => ("friction", "friction = 1.0", drive.friction.is_some()),
+        "limits" => ("restitution` or `stop_stiffness", "restitution = 0.5", has_stops),
+        "restitution" | "stop_stiffness" => ("limits", LIMITS, drive.limits.is_some()),
+        "stop_damping" if drive.restitution.is_none() => ("limits", LIMITS, drive.limits.is_some()),
+        "stop_damping" => ("stop_stiffness", "stop_stiffness = 1e4", drive.stop_stiffness.is_some()),
+        _ => return Ok(()),
+    };
+    if !is_there {
+        return Err(part.key_error(ErrorKind::NoEffect { key: part.key().to_owned(), without, example }));
+    }
+    if part.key() == "restitution" && drive.stop_stiffness.is_some() {
+        return Err(part.key_error(ErrorKind::Exclusive {
+            first: "restitution",
+            second: "stop_stiffness",
+            help: "`restitution` makes the stops rigid, `stop_stiffness` springs; give one of them",
+        }));
+    }
+    Ok(())
+}
+
 fn placed_twice(part: &Item<'_>, second: &'static str) -> ModelError {
     part.key_error(ErrorKind::Exclusive {
         first: "joint",
@@ -151,8 +180,8 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
                 drive.limits = Some(part.array("2 expressions", LIMITS)?);
                 driven.push(part);
             }
-            "armature" | "stiffness" | "rest" | "damping" | "friction" | "stop_stiffness"
-            | "stop_damping" => {
+            "armature" | "stiffness" | "rest" | "damping" | "friction" | "stiction" | "restitution"
+            | "stop_stiffness" | "stop_damping" => {
                 let value = Some(part.expression()?);
                 match part.key() {
                     "armature" => drive.armature = value,
@@ -160,6 +189,8 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
                     "rest" => drive.rest = value,
                     "damping" => drive.damping = value,
                     "friction" => drive.friction = value,
+                    "stiction" => drive.stiction = value,
+                    "restitution" => drive.restitution = value,
                     "stop_stiffness" => drive.stop_stiffness = value,
                     _ => drive.stop_damping = value,
                 }
@@ -190,17 +221,7 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
     if let Some(part) = driven.first().filter(|_| !kind.is_single()) {
         return Err(without_effect(part, kind));
     }
-    for part in &driven {
-        let (without, example, is_there) = match part.key() {
-            "rest" => ("stiffness", "stiffness = 10.0", drive.stiffness.is_some()),
-            "limits" => ("stop_stiffness", "stop_stiffness = 1e4", drive.stop_stiffness.is_some()),
-            "stop_stiffness" | "stop_damping" => ("limits", LIMITS, drive.limits.is_some()),
-            _ => continue,
-        };
-        if !is_there {
-            return Err(part.key_error(ErrorKind::NoEffect { key: part.key().to_owned(), without, example }));
-        }
-    }
+    driven.iter().try_for_each(|part| check_companions(part, &drive))?;
     let coordinates = names(coordinates.as_ref(), body, kind.coordinates(body.key()))?;
     let gear = Gear { follows, ratio, offset };
     if let Some(follows) = gear.following(kind, &coordinates, quasi_velocities.as_ref())? {

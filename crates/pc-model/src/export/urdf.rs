@@ -20,8 +20,8 @@ const STANDARD: [f64; 3] = [0.0, 0.0, -9.81];
 
 /// The text of a robot in URDF that moves like the model, and notes on what was left out.
 ///
-/// Bodies become links, joints keep the names of their coordinates, dampers become `<dynamics>`, and joints that
-/// follow others mimic them. A link
+/// Bodies become links, joints keep the names of their coordinates, dampers and dry friction become `<dynamics>`, stops
+/// `<limit>`, and joints that follow others mimic them. A link
 /// `world` carries the bodies unless one of them is fixed at the origin and carries all others.
 ///
 /// # Errors
@@ -61,7 +61,18 @@ pub fn urdf_of_model(model: &Model) -> Result<(String, Vec<String>), UrdfError> 
     if !document.events.is_empty() {
         notes.push("events are not a part of URDF".to_owned());
     }
-    if document.tree.iter().any(|body| body.joint.kind == JointKind::Prismatic) {
+    let drives = || document.tree.iter().map(|body| &body.joint.drive);
+    if drives().any(|drive| drive.limits.is_some()) {
+        notes.push("how stops push back or rebound is not a part of URDF".to_owned());
+    }
+    if drives().any(|drive| drive.stiction.is_some()) {
+        notes.push("stiction is not a part of URDF".to_owned());
+    }
+    if document
+        .tree
+        .iter()
+        .any(|body| body.joint.kind == JointKind::Prismatic && body.joint.drive.limits.is_none())
+    {
         notes.push(format!("prismatic joints have the limits {UNLIMITED}, for URDF requires some"));
     }
     Ok((text, notes))
@@ -108,7 +119,7 @@ fn refuse_other_parts(document: &Document) -> Result<(), UrdfError> {
         }),
     ];
     let source = &document.source;
-    let help = "URDF has bodies on joints with dampers; leave the rest out";
+    let help = "URDF has bodies on joints with dampers, friction and limits; leave the rest out";
     if let Some((place, what)) = found.into_iter().flatten().next() {
         let message = format!("{what} has no place in URDF");
         return Err(UrdfError::at(source, place.span, place.entry, message, help));
@@ -227,6 +238,7 @@ fn joint(
     let joint = &body.joint;
     let word = match joint.kind {
         JointKind::Fixed => "fixed",
+        JointKind::Revolute if joint.drive.limits.is_some() => "revolute",
         JointKind::Revolute => "continuous",
         JointKind::Prismatic => "prismatic",
         JointKind::Planar => "planar",
@@ -251,10 +263,17 @@ fn joint(
     if let [axis] = joint.axes.as_slice() {
         let _ = writeln!(text, "    <axis xyz=\"{}\"/>", spaced(*axis));
     }
-    if joint.kind == JointKind::Prismatic {
-        let keys = ["lower=\"-", "upper=\"", "effort=\"", "velocity=\""];
-        let limits: Vec<String> = keys.iter().map(|key| format!("{key}{UNLIMITED}\"")).collect();
-        let _ = writeln!(text, "    <limit {}/>", limits.join(" "));
+    let ends = match &joint.drive.limits {
+        Some(ends) => {
+            let [lower, upper] =
+                [0, 1].map(|end| constants.number(&ends[end]).map_err(|error| shown(&error)));
+            Some([lower?, upper?].map(|end| format!("{end:?}")))
+        }
+        None => (joint.kind == JointKind::Prismatic).then(|| [format!("-{UNLIMITED}"), UNLIMITED.to_owned()]),
+    };
+    if let Some([lower, upper]) = ends {
+        let most = format!("effort=\"{UNLIMITED}\" velocity=\"{UNLIMITED}\"");
+        let _ = writeln!(text, "    <limit lower=\"{lower}\" upper=\"{upper}\" {most}/>");
     }
     if let Some(Following { body: followed, ratio, offset, .. }) = &joint.follows {
         let other = constants.document.tree.iter().find(|body| body.name.text == followed.value);
@@ -266,8 +285,13 @@ fn joint(
         let _ =
             writeln!(text, "    <mimic joint=\"{other}\" multiplier=\"{ratio:?}\" offset=\"{offset:?}\"/>");
     }
-    if damping != 0.0 {
-        let _ = writeln!(text, "    <dynamics damping=\"{damping:?}\"/>");
+    let friction = joint.drive.friction.as_ref().map(|friction| constants.number(friction));
+    let friction = friction.transpose().map_err(|error| shown(&error))?.unwrap_or_default();
+    let dynamics =
+        [("damping", damping), ("friction", friction)].into_iter().filter(|(_, value)| *value != 0.0);
+    let dynamics: Vec<String> = dynamics.map(|(key, value)| format!("{key}=\"{value:?}\"")).collect();
+    if !dynamics.is_empty() {
+        let _ = writeln!(text, "    <dynamics {}/>", dynamics.join(" "));
     }
     text += "  </joint>\n";
     Ok(text)

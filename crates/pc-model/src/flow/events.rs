@@ -10,6 +10,7 @@ use crate::assembly::constraint_treatment::ConstraintFormulation;
 use crate::diagnostics::error::ModelError;
 use crate::flow::constrained_resets::ConstrainedResets;
 use crate::flow::event_slopes::EventSlopes;
+use crate::flow::impacts::Impacts;
 use crate::flow::reading::{Reading, inputs};
 use crate::model::model::Model;
 
@@ -28,6 +29,8 @@ pub struct FlowEvents {
     tables: Vec<usize>,
     /// The effect on resets of constraints enforced by multipliers.
     constraints: Option<ConstrainedResets>,
+    /// The impacts among the events.
+    impacts: Option<Impacts>,
     /// Storage for (x, η, z) with all η.
     room: Vec<f64>,
 }
@@ -91,6 +94,7 @@ impl FlowEvents {
             slopes,
             tables: model.parameter_values().tables().iter().map(|&(place, _)| place).collect(),
             constraints,
+            impacts: Impacts::new(assembly)?,
             room: Vec::new(),
         })
     }
@@ -103,6 +107,9 @@ impl FlowEvents {
         self.reading.set_parameters(parameters);
         if let Some(constraints) = &mut self.constraints {
             constraints.set_parameters(parameters);
+        }
+        if let Some(impacts) = &mut self.impacts {
+            impacts.set_parameters(parameters);
         }
     }
 
@@ -147,8 +154,8 @@ impl FlowEvents {
 }
 
 fn event(event: &crate::assembly::event::Event<'_>) -> Event {
-    let resets = !event.resets.is_empty();
-    Event::new(&event.name).direction(event.direction).terminal(event.terminal).resetting(resets)
+    let changes = event.changes_state();
+    Event::new(&event.name).direction(event.direction).terminal(event.terminal).resetting(changes)
 }
 
 impl Events for FlowEvents {
@@ -169,9 +176,15 @@ impl Events for FlowEvents {
         plain.then(|| (self.functions.program(), self.reading.parameters()))
     }
 
-    /// All new values are functions of the state before the event.
+    /// All new values are functions of the state before the event, or follow from an impulse.
     fn reset(&mut self, event: usize, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         let mut all = self.reading.read(t, y).map_err(Failure::fatal)?;
+        if let Some(impacts) = &mut self.impacts
+            && impacts.strike(event, t, &mut all, self.reading.parameters())?
+        {
+            y.copy_from_slice(&self.reading.write(t, &all).map_err(Failure::fatal)?);
+            return Ok(());
+        }
         let before = all.clone();
         let Reset { places, values } = &mut self.resets[event];
         let mut new = vec![0.0; places.len()];

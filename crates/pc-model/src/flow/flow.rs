@@ -49,6 +49,13 @@ impl Flow {
         variables: Variables,
     ) -> Result<Flow, ModelError> {
         let refused = |error| assembly.document.derivation_error(error);
+        if matches!(variables, Variables::Momenta | Variables::ReducedMomenta)
+            && assembly.system.is_held_at_rest()
+        {
+            let message =
+                "its joints are held at rest by stops or stiction, but this form has momenta".to_owned();
+            return Err(assembly.no_form(message, "use a form in velocities, such as poincare"));
+        }
         match (variables, assembly.constraints.held()) {
             (Variables::QuasiVelocities, Some(_)) => {
                 let compiled = model.compile(assembly)?;
@@ -106,7 +113,8 @@ impl Flow {
         let all = assembly.quasi_velocities_of(free)?;
         let reading = Reading::new(assembly, form, &all, transform, model.signals())?;
         let explicit = reading.transform.is_none() && form.matrix.is_none() && !assembly.has_multipliers();
-        let slopes = (explicit && model.differentiates_by_parameters())
+        let is_explicit = explicit && assembly.events.iter().all(|event| event.impact.is_none());
+        let slopes = (is_explicit && model.differentiates_by_parameters())
             .then(|| EventSlopes::new(model, assembly, free, &all))
             .transpose()?;
         // Eliminated multipliers still determine where a reset may lead.

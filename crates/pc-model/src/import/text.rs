@@ -15,18 +15,20 @@ use crate::import::xml::parse;
 use crate::import::{additions, mjcf, sdf, urdf};
 
 /// How a robot becomes a model.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImportOptions {
     /// Whether the root link moves freely; otherwise it is fixed.
     pub floating: bool,
     /// Whether joints that move no mass are fixed; otherwise they are refused.
     pub fix_massless: bool,
+    /// The coefficient of restitution of rigid stops at the limits of joints; without it limits become comments.
+    pub restitution: Option<f64>,
 }
 
 /// The text of the model of a robot in URDF, and notes on what was left out and changed.
 ///
 /// Bodies have the names of links, and coordinates those of joints, changed if they are not valid names.
-/// Limits and meshes become comments.
+/// Meshes become comments, and so do limits unless they are to be rigid stops.
 ///
 /// # Errors
 /// [`UrdfError`], which gives the file, line and column.
@@ -48,7 +50,8 @@ pub fn model_of_robot(source: &Source, options: ImportOptions) -> Result<(String
     let tree = Tree::of(source, &robot)?;
     massless::check(source, &robot, &tree.order)?;
     let starts = tree.starts()?;
-    Ok((tree.text(options.floating, &starts), tree.left_out()))
+    let stops = Stops::of(&robot, options.restitution, &starts);
+    Ok((tree.text(options.floating, &starts, &stops), tree.left_out(&stops)))
 }
 
 /// [`model_of_robot`] with the root link free if `floats` is set, and without joints that move no mass.
@@ -56,7 +59,45 @@ pub fn model_of_robot(source: &Source, options: ImportOptions) -> Result<(String
 /// # Errors
 /// [`UrdfError`], which gives the file, line and column.
 pub fn model_of_urdf(source: &Source, floats: bool) -> Result<(String, Vec<String>), UrdfError> {
-    model_of_robot(source, ImportOptions { floating: floats, fix_massless: false })
+    model_of_robot(source, ImportOptions { floating: floats, ..ImportOptions::default() })
+}
+
+/// The joints whose limits become rigid stops.
+#[derive(Default)]
+struct Stops<'a> {
+    restitution: f64,
+    /// The joints, each with its two ends.
+    ends: Vec<(&'a Joint, [f64; 2])>,
+    /// The joints whose limits cannot become stops, for they start beyond them.
+    beyond: Vec<&'a Joint>,
+}
+
+impl<'a> Stops<'a> {
+    /// The stops of a robot with this coefficient of restitution, if one is given.
+    fn of(robot: &'a Robot, restitution: Option<f64>, starts: &[(&Joint, f64)]) -> Stops<'a> {
+        let Some(restitution) = restitution else { return Stops::default() };
+        let mut stops = Stops { restitution, ..Stops::default() };
+        let coupled = additions::coupled_starts(robot, starts);
+        let start_of = |joint: &Joint| {
+            let known = coupled.iter().chain(starts).find(|(other, _)| other.name == joint.name);
+            known.map_or(0.0, |(_, start)| *start)
+        };
+        for joint in robot.joints.iter().filter(|joint| joint.kind.is_single()) {
+            let end = |key: &str| joint.limits.iter().find(|(known, _)| *known == key).map(|(_, end)| *end);
+            let (Some(lower), Some(upper)) = (end("lower"), end("upper")) else { continue };
+            match (lower..=upper).contains(&start_of(joint)) && lower < upper {
+                true => stops.ends.push((joint, [lower, upper])),
+                false => stops.beyond.push(joint),
+            }
+        }
+        stops
+    }
+
+    /// The entries of a joint.
+    fn entries(&self, joint: &Joint) -> Option<String> {
+        let (_, ends) = self.ends.iter().find(|(other, _)| other.name == joint.name)?;
+        Some(format!(", limits = {}, restitution = {:?}", list(ends), self.restitution))
+    }
 }
 
 /// The links of a robot in the order of a tree.
@@ -171,7 +212,7 @@ impl<'a> Tree<'a> {
         Ok(starts)
     }
 
-    fn left_out(&self) -> Vec<String> {
+    fn left_out(&self, stops: &Stops<'_>) -> Vec<String> {
         let elements = self.robot.left_out.iter().map(|(name, count)| match count {
             1 => format!("one <{name}> is left out"),
             _ => format!("{count} <{name}> are left out"),
@@ -186,6 +227,10 @@ impl<'a> Tree<'a> {
             Some(format!("the joint `{}` is fixed: that it mimics `{}` is left out", joint.name, mimic.joint))
         });
         let remarks = self.robot.joints.iter().flat_map(|joint| joint.remarks.clone());
+        let beyond = stops
+            .beyond
+            .iter()
+            .map(|joint| format!("the joint `{}` starts beyond its limits, which are left out", joint.name));
         let moments = self.robot.links.iter().filter_map(|link| {
             let [a, b, c] = impossible(link.inertial.as_ref()?)?.map(rounded);
             Some(format!(
@@ -199,11 +244,12 @@ impl<'a> Tree<'a> {
             .chain(dry)
             .chain(still)
             .chain(remarks)
+            .chain(beyond)
             .chain(moments)
             .collect()
     }
 
-    fn text(&self, floats: bool, starts: &[(&Joint, f64)]) -> String {
+    fn text(&self, floats: bool, starts: &[(&Joint, f64)], stops: &Stops<'_>) -> String {
         let mut text = String::new();
         let mut line = |line: String| {
             text += &line;
@@ -213,7 +259,7 @@ impl<'a> Tree<'a> {
             .file_name()
             .map_or_else(|| "-".into(), |name| name.to_string_lossy());
         line(format!("# Made of the {} file {} by `pc import`.", self.robot.format, one_line(&file)));
-        self.left_out().iter().for_each(|left| line(format!("# {}.", one_line(left))));
+        self.left_out(stops).iter().for_each(|left| line(format!("# {}.", one_line(left))));
         line("\n[model]".into());
         line(format!("name = {}", quoted(&self.robot.name)));
         let section = |title: &str, lines: Vec<String>| match lines.as_slice() {
@@ -239,7 +285,7 @@ impl<'a> Tree<'a> {
             }
         }
         for (link, joint) in self.order.iter().filter(|(link, _)| !link.is_world) {
-            line(self.body(link, *joint, floats));
+            line(self.body(link, *joint, floats, stops));
         }
         additions::loops(self.robot, &self.names).into_iter().for_each(&mut line);
         text += &section("constraints", additions::constraints(self.robot, &self.names));
@@ -263,7 +309,7 @@ impl<'a> Tree<'a> {
     }
 
     /// The section of a body.
-    fn body(&self, link: &Link, joint: Option<&Joint>, floats: bool) -> String {
+    fn body(&self, link: &Link, joint: Option<&Joint>, floats: bool, stops: &Stops<'_>) -> String {
         let mut text = format!("\n[bodies.{}]", self.names.body(&link.name));
         let mut line = |line: String| {
             text.push('\n');
@@ -280,13 +326,14 @@ impl<'a> Tree<'a> {
                 if self.names.coordinate(joint).is_some_and(|x| x != joint.name) {
                     line(format!("# the joint {}", one_line(&joint.name)));
                 }
-                if !joint.limits.is_empty() {
+                let stopped = stops.entries(joint);
+                if stopped.is_none() && !joint.limits.is_empty() {
                     let limits: Vec<String> =
                         joint.limits.iter().map(|(key, value)| format!("{key} {value}")).collect();
                     line(format!("# limits of the joint {}: {}", one_line(&joint.name), limits.join(", ")));
                 }
                 line(format!("parent = \"{}\"", self.names.body(&joint.parent)));
-                line(self.joint(joint));
+                line(self.joint(joint, stopped.as_deref().unwrap_or_default()));
             }
         }
         if let Some(inertial) = &link.inertial {
@@ -299,7 +346,8 @@ impl<'a> Tree<'a> {
         text
     }
 
-    fn joint(&self, joint: &Joint) -> String {
+    /// The entry `joint`, with the entries of its stops.
+    fn joint(&self, joint: &Joint, stops: &str) -> String {
         let kind = match joint.kind {
             Kind::Fixed => "fixed",
             Kind::Revolute | Kind::Continuous => "revolute",
@@ -341,6 +389,7 @@ impl<'a> Tree<'a> {
             }
         }
         text += &additions::drive_of(joint, &self.names);
+        text += stops;
         match self.names.coordinate(joint) {
             Some(x) if x != self.names.body(&joint.child) => {
                 let _ = write!(text, ", coordinates = [\"{x}\"]");

@@ -103,7 +103,7 @@ impl<'g> Scope<'g, '_> {
 
     /// The joint with its rotor, spring, damper, friction and stops.
     fn driven(&mut self, joint: &document::Joint, made: Joint<'g>) -> Result<Joint<'g>, ModelError> {
-        let document::Drive { armature, stiffness, rest, damping, friction, .. } = &joint.drive;
+        let document::Drive { armature, stiffness, rest, damping, friction, stiction, .. } = &joint.drive;
         let mut constant = |part: &Option<Expression>| -> Result<Option<Expr<'g>>, ModelError> {
             part.as_ref().map(|part| self.resolve(part, Stage::Joint)).transpose()
         };
@@ -120,8 +120,14 @@ impl<'g> Scope<'g, '_> {
         if let Some(friction) = constant(friction)? {
             made = made.friction(friction);
         }
+        if let Some(stiction) = constant(stiction)? {
+            made = made.stiction(stiction);
+        }
         if let Some([lower, upper]) = &joint.drive.limits {
             let ends = [self.resolve(lower, Stage::Joint)?, self.resolve(upper, Stage::Joint)?];
+            if joint.drive.restitution.is_some() {
+                return Ok(made.ends(ends));
+            }
             let mut number = |part: &Option<Expression>| -> Result<Expr<'g>, ModelError> {
                 part.as_ref().map_or(Ok(Expr::ZERO), |part| self.resolve(part, Stage::Joint))
             };

@@ -80,7 +80,18 @@ fn name_momenta(integrals: &mut Integrals<'_>, system: &System<'_>) {
 /// Marks functions that are conserved between events, but may be changed by resets.
 fn say_what_jumps<'g>(integrals: &mut Integrals<'g>, assembly: &Assembly<'g>) {
     let projected = matches!(assembly.constraints.formulation(), ConstraintFormulation::Multipliers(_));
-    integrals.jump(&assembly.system, assembly.events.iter().map(|event| event.resets.as_slice()), projected);
+    // An impact gives all velocities values of which nothing is known here.
+    let (state, graph) = (assembly.system.state(), assembly.system.graph());
+    let n = assembly.system.frame().coordinates().len();
+    let moving = n..state.len() - assembly.system.states().len();
+    let unknown = |place: usize| (place, graph.symbol(&format!("{} after the impact", state[place])));
+    let any: Vec<_> = moving.map(unknown).collect();
+    let reset = |event: &'_ pc_model::Event<'g>| match event.impact {
+        Some(_) => any.clone(),
+        None => event.resets.clone(),
+    };
+    let resets: Vec<_> = assembly.events.iter().map(reset).collect();
+    integrals.jump(&assembly.system, resets.iter().map(Vec::as_slice), projected);
 }
 
 /// The energy formed with all velocities, which a run observes, in terms of the independent velocities of the

@@ -37,7 +37,7 @@ pub(crate) fn section<'g>(ground: &Basis<'_, 'g>) -> Result<Section<'g>, ModelEr
         entries.push(Entry::words("its density is too long to print").with(Verdict::Proved));
     }
     let singular: Vec<String> = measure.singular.iter().map(|p| format!("{p} = 0")).collect();
-    let resets = ground.assembly.events.iter().any(|event| !event.resets.is_empty());
+    let resets = ground.assembly.events.iter().any(pc_model::Event::changes_state);
     let words = [
         (!singular.is_empty()).then(|| format!("singular where {}", singular.join(" or "))),
         measure.jumps.then(|| "where nothing jumps".to_owned()),

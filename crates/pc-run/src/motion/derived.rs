@@ -34,7 +34,7 @@ pub(crate) struct Facts {
 
 impl Facts {
     pub(crate) fn of(assembly: &Assembly<'_>) -> Facts {
-        let has_resets = assembly.events.iter().any(|event| !event.resets.is_empty());
+        let has_resets = assembly.events.iter().any(pc_model::Event::changes_state);
         Facts {
             dropped: dropped(assembly),
             jumps: jumps(assembly),

@@ -69,8 +69,8 @@ pub(crate) struct Passage {
     pub(crate) after: Vec<f64>,
 }
 
-/// Writes the functions whose zeros an integration looks for: those of the surfaces, and 1 − σ² for
-/// the surfaces along which the motion slides.
+/// Writes the functions whose zeros an integration looks for: those of the surfaces, and for the
+/// surfaces along which the motion slides the margin of σ, such as 1 − σ².
 pub(crate) fn write_functions(
     field: &mut impl VectorField,
     held: &HeldSides,
@@ -91,7 +91,7 @@ pub(crate) fn write_functions(
     if held.sides.contains(&0.0) {
         let Sliding { surfaces, weights, .. } = Sliding::of(switching, &held.sides, t, y)?;
         for (surface, weight) in surfaces.into_iter().zip(weights) {
-            values[surface] = 1.0 - weight * weight;
+            values[surface] = switching.range(surface, t, y).margin(weight);
         }
     }
     Ok(())

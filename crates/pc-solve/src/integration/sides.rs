@@ -7,7 +7,7 @@
 //! reached at once, or the motion already slides along others, all combinations are tried; those in
 //! which the motion slides along fewer surfaces come first.
 
-use pc_expr::{Events, Failure, Sliding, SlidingError, Switching, VectorField};
+use pc_expr::{Events, Failure, Sliding, SlidingError, SlidingRange, Switching, VectorField};
 
 use crate::error::{Reason, SolveError};
 #[cfg(feature = "cvode")]
@@ -26,7 +26,7 @@ const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 /// The rate of a function counts as zero if it is less than this fraction of the sum of the rate's
 /// terms.
 const FLAT: f64 = 1e-11;
-/// |σ| may exceed 1 by this where a motion begins to slide.
+/// |σ| may exceed its bound by this fraction where a motion begins to slide.
 const BEYOND: f64 = 1e-9;
 /// Up to this number of surfaces, all combinations are tried; if there are more, the sides are
 /// decided one after another.
@@ -121,6 +121,11 @@ impl Place<'_> {
         }))
     }
 
+    /// The sides to be tried in turn for a surface that is reached, with those that f alone suggests.
+    fn options(&mut self, surface: usize, plain: [f64; 3]) -> [f64; 3] {
+        self.field.range(surface, self.t, self.y).options(plain)
+    }
+
     /// The rate below which a function counts as constant.
     fn least_rate(&self, rates: &[f64]) -> f64 {
         let largest = |v: &[f64]| v.iter().fold(0.0, |size: f64, v| size.max(v.abs()));
@@ -163,7 +168,8 @@ impl Place<'_> {
                             && rate.abs() <= self.least_rate(&sliding.rates).max(ROUNDINGS * slope.abs())
                     }
                 };
-                let stays = is_led_back && weight.abs() <= 1.0 + BEYOND;
+                let range = self.field.range(surface, self.t, self.y);
+                let stays = is_led_back && range.holds(weight, BEYOND);
                 if !stays {
                     return Ok(Verdict::Left(place, 1.0_f64.copysign(weight)));
                 }
@@ -253,7 +259,9 @@ impl Place<'_> {
     /// each surface acts on its own function more strongly than the others do.
     fn decide_in_turn(&mut self, sides: &[f64], open: &Open) -> Result<Option<Vec<f64>>, Failure> {
         let mut tried = sides.to_vec();
-        open.iter().for_each(|&(surface, _)| tried[surface] = 0.0);
+        for &(surface, options) in open {
+            tried[surface] = if options.contains(&0.0) { 0.0 } else { options[0] };
+        }
         for _ in 0..20 * open.len() {
             self.follow(&mut tried, open);
             match self.judge(&tried, open)? {
@@ -289,8 +297,9 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             sides = found;
         }
         let is_open = |&surface: &usize| place.before[surface].abs() <= rounding[surface];
+        let open: Vec<usize> = (0..sides.len()).filter(is_open).collect();
         let open: Open =
-            (0..sides.len()).filter(is_open).map(|surface| (surface, [1.0, -1.0, 0.0])).collect();
+            open.into_iter().map(|surface| (surface, place.options(surface, [1.0, -1.0, 0.0]))).collect();
         let decided = if open.is_empty() { Ok(Some(sides)) } else { place.decide(&sides, &open) };
         self.take_sides(decided, &open)
     }
@@ -318,7 +327,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         for &surface in due.iter().filter(|&&surface| before[surface] != 0.0) {
             let side = before[surface];
             crosses = true;
-            if self.jumps(surface) {
+            if self.jumps(surface) || self.is_passed(surface, (t, &y)) {
                 sides[surface] = -side;
             } else {
                 open.push((surface, [-side, 0.0, side]));
@@ -332,6 +341,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         let decided = match self.engine.field_mut().switching() {
             Some(field) if crosses => {
                 let mut place = Place { field, t, y: &y, direction, least, span, before: Vec::new() };
+                open.iter_mut().for_each(|(surface, options)| *options = place.options(*surface, *options));
                 place.before = place.functions(&before).0;
                 place.decide(&sides, &open)
             }
@@ -353,6 +363,12 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     pub(crate) fn jumps(&self, surface: usize) -> bool {
         let noise = self.noise.get(self.events.events().len() + surface);
         noise.is_some_and(|noise| *noise == 0.0)
+    }
+
+    /// Whether a motion always passes through a surface, because nothing jumps there.
+    fn is_passed(&mut self, surface: usize, (t, y): (f64, &[f64])) -> bool {
+        let field = self.engine.field_mut().switching();
+        field.is_some_and(|field| field.range(surface, t, y) == SlidingRange::NONE)
     }
 
     /// Decides the sides anew at a break of a table while the motion slides. The function of a
@@ -379,7 +395,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             if (behind[surface] - ahead[surface]).abs() > rounding[surface] {
                 sides[surface] = 1.0_f64.copysign(behind[surface]);
             } else {
-                open.push((surface, [0.0, 1.0, -1.0]));
+                open.push((surface, place.options(surface, [0.0, 1.0, -1.0])));
             }
         }
         place.before = behind;
@@ -482,7 +498,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         for (surface, &side) in self.held.sides.iter().enumerate() {
             let value = self.front.values[first + surface];
             let is_open = open.iter().any(|&(other, _)| other == surface);
-            // 1 − σ² is positive where the motion slides.
+            // The margin of σ is positive where the motion slides.
             let side = if side == 0.0 { 1.0 } else { side };
             // What has jumped away from zero is on its side at once.
             let has_jumped = value * side > NEAR;

@@ -8,6 +8,7 @@ use crate::comparison::second::Second;
 use crate::derivation::place::Place;
 use crate::error::{Disagreement, Irregular, VerifyError};
 use crate::numbers::rounding::{Rounding, within};
+use crate::text::term::Term;
 
 /// The tolerance for a reset: it takes some operations, and then the state is projected so that quaternions
 /// have length 1.
@@ -15,6 +16,9 @@ const APART: f64 = 1e-12;
 /// Velocities are projected onto constraints to within this fraction of their terms: rounding errors of
 /// positions rotate the constraints.
 const OFF: f64 = 1e-9;
+
+/// Stops whose gap is at most this fraction of the way between the ends are reached.
+const REACHED: f64 = 1.1e-9;
 
 /// The effect of an event on a state.
 #[derive(Clone, Copy, Debug)]
@@ -122,6 +126,7 @@ impl Second {
                 pairs.push((name.clone(), found, value, value.abs().max(found.abs())));
             }
         }
+        pairs.extend(self.struck(jump, (&before, &after))?);
         let is_reset = |name: &String| resets.clone().any(|reset| reset.name.text == *name);
         let kept = |names: &[String], old: &[f64], new: &[f64]| -> Vec<(String, f64, f64, f64)> {
             let all = names.iter().zip(old.iter().zip(new)).filter(|(name, _)| !is_reset(name));
@@ -130,6 +135,53 @@ impl Second {
         };
         pairs.extend(kept(&names.coordinates, &before.x, &after.x));
         pairs.extend(kept(&names.states, &before.z, &after.z));
+        Ok(pairs)
+    }
+
+    /// The rate of the gap before and after an impact on a stop, v⁺ = −e v⁻, and the momenta to which no impulse has a
+    /// component, which stay; nothing for other events. Stops that are reached already may give impulses, too.
+    fn struck(
+        &self,
+        jump: &Jump<'_>,
+        (before, after): (&Place, &Place),
+    ) -> Result<Vec<(String, f64, f64, f64)>, Irregular> {
+        let stops = &self.derivation.text.stops;
+        let Some(stop) = stops.iter().find(|stop| stop.event == jump.event) else { return Ok(Vec::new()) };
+        let exact = Rounding::none();
+        let value = |at: &Place, term: &Term| self.derivation.still(at, &exact).value(term);
+        let mut reached = vec![stop];
+        for other in stops.iter().filter(|other| other.event != stop.event) {
+            if value(before, &other.gap)? <= REACHED * value(before, &other.way)? {
+                reached.push(other);
+            }
+        }
+        let mut pairs = Vec::new();
+        if reached.len() == 1 {
+            let (arrives, leaves) = (value(before, &stop.rate)?, value(after, &stop.rate)?);
+            let restitution = value(before, &stop.restitution)?;
+            let expected = if arrives < 0.0 { -restitution * arrives } else { arrives };
+            pairs.push(("the rate of the gap".to_owned(), leaves, expected, arrives.abs()));
+        }
+        let (first, then) = (self.derivation.at(before, &exact)?, self.derivation.at(after, &exact)?);
+        for s in 0..before.w.len() {
+            let mut faster = before.clone();
+            faster.w[s] += 1.0;
+            let mut is_pushed = false;
+            for stop in &reached {
+                is_pushed |= value(&faster, &stop.rate)? != value(before, &stop.rate)?;
+            }
+            if !is_pushed {
+                let size = first.momentum_sizes[s].max(then.momentum_sizes[s]);
+                // The change of velocities is a solution of equations with this condition.
+                let size = size * first.condition.max(1.0);
+                pairs.push((
+                    format!("the momentum number {}", s + 1),
+                    then.momenta[s],
+                    first.momenta[s],
+                    size,
+                ));
+            }
+        }
         Ok(pairs)
     }
 

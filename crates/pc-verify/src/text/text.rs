@@ -10,7 +10,7 @@ use pc_model::document::{AlgebraDefinition, Document, Expression, NamedExpressio
 use crate::error::Unable;
 use crate::text::body::{Body, Turning, matrix};
 use crate::text::term::{Declared, Names, Term};
-use crate::text::tree::Tree;
+use crate::text::tree::{Stop, Tree};
 
 /// Everything in a model that determines its motion.
 #[derive(Clone, Debug)]
@@ -41,6 +41,8 @@ pub(crate) struct Text {
     pub(crate) dissipation: Option<Term>,
     pub(crate) bodies: Vec<Body>,
     pub(crate) forces: Vec<(Forced, Term)>,
+    /// The rigid stops of joints.
+    pub(crate) stops: Vec<Stop>,
     /// `[integrals]` and `[outputs]`, as far as they can be resolved.
     pub(crate) observed: Vec<(String, Term)>,
     /// The time at which work on the model must end.
@@ -147,6 +149,7 @@ impl Text {
             lagrangian: part(energy.and_then(|l| l.lagrangian.as_ref()))?,
             dissipation: with(energy.and_then(|l| l.dissipation.as_ref()), drives.dissipation)?,
             bodies: bodies.chain(tree.bodies(&names)?.into_iter().map(Ok)).collect::<Result<_, Unable>>()?,
+            stops: drives.stops,
             forces: document
                 .forces
                 .iter()

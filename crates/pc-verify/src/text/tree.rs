@@ -23,6 +23,19 @@ pub(crate) struct Drives {
     pub(crate) dissipation: Vec<Term>,
     /// The forces of dry friction, with the coordinates on which they act.
     pub(crate) friction: Vec<(String, Term)>,
+    pub(crate) stops: Vec<Stop>,
+}
+
+/// A rigid stop.
+#[derive(Clone, Debug)]
+pub(crate) struct Stop {
+    /// The name of the event at which it is struck.
+    pub(crate) event: String,
+    /// The gap, its rate, and the distance between the two ends.
+    pub(crate) gap: Term,
+    pub(crate) rate: Term,
+    pub(crate) way: Term,
+    pub(crate) restitution: Term,
 }
 
 /// The number of definitions of a body: J_0, J, R and r.
@@ -195,7 +208,22 @@ impl<'a> Tree<'a> {
                 let stretch = Term::Sum(vec![(false, x.clone()), (true, rest)]);
                 drives.potential.push(half_square(stiffness, &stretch));
             }
-            if let Some([lower, upper]) = limits {
+            // Rigid stops act at rest and in impacts only.
+            if let (Some(restitution), Some([lower, upper])) = (term(&joint.drive.restitution)?, limits) {
+                let [lower, upper] = [names.resolve(&lower.ast)?, names.resolve(&upper.ast)?];
+                let minus = |a: &Term, b: &Term| Term::Sum(vec![(false, a.clone()), (true, b.clone())]);
+                let stop = |end: &str, gap: Term, rate: Term| Stop {
+                    event: format!("{}_{end}", body.name.text),
+                    gap,
+                    rate,
+                    way: minus(&upper, &lower),
+                    restitution: restitution.clone(),
+                };
+                let reversed = Term::Negative(Box::new(rate.clone()));
+                drives.stops.push(stop("lower", minus(x, &lower), rate.clone()));
+                drives.stops.push(stop("upper", minus(&upper, x), reversed));
+            }
+            if let Some([lower, upper]) = limits.as_ref().filter(|_| joint.drive.restitution.is_none()) {
                 let [lower, upper] = [names.resolve(&lower.ast)?, names.resolve(&upper.ast)?];
                 let beyond = [
                     Term::Sum(vec![(false, x.clone()), (true, upper)]),

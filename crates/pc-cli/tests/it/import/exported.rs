@@ -1,6 +1,7 @@
 //! Models written as robots in URDF and read again.
 
 use pc_model::export::urdf_of_model;
+use pc_model::import::{ImportOptions, model_of_robot};
 use pc_model::{Document, Model, Source};
 
 use super::motion::{alike, flow, imported, rates, text_of};
@@ -92,7 +93,7 @@ const REFUSED: &[(&str, &str, &str)] = &[
     (
         "[forces]",
         "[lagrangian]\npotential = \"s^2\"\n[forces]",
-        "m.toml:29:14: [lagrangian] potential: an energy besides that of bodies and weight has no place in URDF\n    potential = \"s^2\"\n                 ^^^\n  help: URDF has bodies on joints with dampers; leave the rest out",
+        "m.toml:29:14: [lagrangian] potential: an energy besides that of bodies and weight has no place in URDF\n    potential = \"s^2\"\n                 ^^^\n  help: URDF has bodies on joints with dampers, friction and limits; leave the rest out",
     ),
     (
         "kind = \"prismatic\", axis = [0, 0, 1]",
@@ -120,4 +121,44 @@ fn what_has_no_place_is_named() {
         }
     }
     assert!(complaints.is_empty(), "{}", complaints.join("\n\n"));
+}
+
+/// Limits become stops on request, except of joints that start beyond them; written as URDF they are limits again.
+#[test]
+fn limits_become_stops_and_limits_again() {
+    let link = |name: &str| {
+        format!(
+            "<link name=\"{name}\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" \
+             izz=\"1\"/></inertial></link>\n"
+        )
+    };
+    let joint = |name: &str, parent: &str, child: &str, limits: [f64; 2]| {
+        format!(
+            "<joint name=\"{name}\" type=\"revolute\"><parent link=\"{parent}\"/><child link=\"{child}\"/><axis xyz=\"0 1 0\"/>\
+             <limit lower=\"{:?}\" upper=\"{:?}\" effort=\"1\" velocity=\"1\"/><dynamics damping=\"0.1\" friction=\"0.2\"/></joint>\n",
+            limits[0], limits[1]
+        )
+    };
+    let urdf = format!(
+        "<robot name=\"r\"><link name=\"base\"/>\n{}{}{}{}</robot>",
+        link("a"),
+        link("b"),
+        joint("s", "base", "a", [-1.5, 0.5]),
+        joint("e", "a", "b", [0.2, 2.0])
+    );
+    let options = ImportOptions { restitution: Some(0.25), ..ImportOptions::default() };
+    let (text, notes) = model_of_robot(&Source::new("r.urdf", urdf), options).unwrap();
+    assert_eq!(notes, ["the joint `e` starts beyond its limits, which are left out"]);
+    assert!(text.contains(", limits = [-1.5, 0.5], restitution = 0.25"), "{text}");
+    assert!(text.contains("# limits of the joint e: lower 0.2, upper 2"), "{text}");
+    assert_eq!(pc_expr::Events::events(&flow(&text).events).len(), 2);
+    let (again, notes) = exported(&text).unwrap();
+    assert_eq!(notes, ["how stops push back or rebound is not a part of URDF"]);
+    let expected = [
+        "<joint name=\"s\" type=\"revolute\">",
+        "<limit lower=\"-1.5\" upper=\"0.5\" effort=\"1e9\" velocity=\"1e9\"/>",
+        "<dynamics damping=\"0.1\" friction=\"0.2\"/>",
+        "<joint name=\"e\" type=\"continuous\">",
+    ];
+    expected.iter().for_each(|part| assert!(again.contains(part), "{part} in {again}"));
 }

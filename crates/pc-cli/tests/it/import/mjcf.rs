@@ -238,7 +238,7 @@ fn what_is_wrong_is_shown_where_it_stands() {
         }
     }
     assert!(complaints.is_empty(), "{}", complaints.join("\n\n"));
-    let floating = ImportOptions { floating: true, fix_massless: false };
+    let floating = ImportOptions { floating: true, ..ImportOptions::default() };
     let error = model_of_robot(&Source::new("r.xml", gantry()), floating).unwrap_err().to_string();
     assert!(error.contains("--floating has no place here: MJCF says which bodies move freely"), "{error}");
 }

@@ -93,7 +93,7 @@ pub(super) const ENDS: &str = r#"<robot name="r"><link name="base"/>
 #[test]
 fn links_without_mass_are_fixed_on_request() {
     let source = Source::new("r.urdf", ENDS);
-    let fixing = ImportOptions { floating: false, fix_massless: true };
+    let fixing = ImportOptions { fix_massless: true, ..ImportOptions::default() };
     let (text, notes) = model_of_robot(&source, fixing).unwrap();
     assert_eq!(
         notes,

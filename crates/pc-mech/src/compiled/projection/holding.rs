@@ -8,7 +8,7 @@ use crate::compiled::projection::constraint_manifold::{MOST_STEPS, Part, Surface
 use crate::numeric::least_squares::LeastSquares;
 
 /// A combination of rows this small relative to the rows is treated as rounding error.
-pub(super) const DEPENDENT: f64 = 1e-12;
+pub(crate) const DEPENDENT: f64 = 1e-12;
 
 /// The corresponding bound near states where constraints become dependent.
 pub(super) const NEARLY_DEPENDENT: f64 = 1e-7;

@@ -63,8 +63,12 @@ class _Single(Joint):
         The coefficient d of the force -d x'.
     friction : expression, optional
         The size F of dry friction, the force -F sign(x').
+    stiction : expression, optional
+        The force F_s, at least F, up to which friction holds the joint at rest; F by default.
     limits : pair of expressions, optional
         The ends of its way: stops push back with ``stop_stiffness`` s + ``stop_damping`` s' where x is beyond an end by s.
+    restitution : expression, optional
+        The coefficient e of rigid stops at the ends, in place of ``stop_stiffness``: there x' becomes -e x'.
     stop_stiffness, stop_damping : expression, optional
         No damping by default.
     """
@@ -77,7 +81,9 @@ class _Single(Joint):
     rest: Any = None
     damping: Any = None
     friction: Any = None
+    stiction: Any = None
     limits: Sequence[Any] | None = None
+    restitution: Any = None
     stop_stiffness: Any = None
     stop_damping: Any = None
 
