@@ -84,6 +84,17 @@ impl<'g> Scope<'g, '_> {
             return Err(self.error(expression, span, fault));
         }
         let value = self.ast(expression, inner, stage)?;
+        self.rate_of(expression, span, value, stage)
+    }
+
+    /// The rate of a value that the part `span` of an expression denotes.
+    pub(super) fn rate_of(
+        &mut self,
+        expression: &Expression,
+        span: Span,
+        value: Expr<'g>,
+        stage: Stage,
+    ) -> Result<Expr<'g>, ModelError> {
         let input = |input: &&crate::document::Input| value.depends_on(self.graph.symbol(&input.name.text));
         if let Some(input) = self.document.inputs.iter().find(input) {
             let name = input.name.text.clone();
