@@ -182,15 +182,25 @@ impl<'g> Motions<'_, 'g> {
         Some(scaled(self.tree.bodies[i].mass, &apply(self.tree.graph, &motion.rotation, &velocity)))
     }
 
+    /// The position of the mass centre of a body, along the axes of the world.
+    pub fn mass_centre(&self, body: &str) -> Option<[Expr<'g>; 3]> {
+        let (motion, centre, _) = self.centre(self.tree.place_of(body)?);
+        Some(add(&motion.place, &apply(self.tree.graph, &motion.rotation, &centre)))
+    }
+
+    /// The angular momentum I ω of a body about its mass centre, along the axes of the world.
+    pub fn spin(&self, body: &str) -> Option<[Expr<'g>; 3]> {
+        let (graph, i) = (self.tree.graph, self.tree.place_of(body)?);
+        let motion = self.of_stand(&self.tree.stands[i]);
+        let spin = apply(graph, &self.tree.stands[i].inertia(graph, &self.tree.bodies[i]), &motion.omega);
+        Some(apply(graph, &motion.rotation, &spin))
+    }
+
     /// The angular momentum r_c × m v_c + I ω of a body about the origin of the world, along the axes of the
     /// world.
     pub fn angular_momentum(&self, body: &str) -> Option<[Expr<'g>; 3]> {
-        let (graph, i) = (self.tree.graph, self.tree.place_of(body)?);
-        let (motion, centre, velocity) = self.centre(i);
-        let spin = apply(graph, &self.tree.stands[i].inertia(graph, &self.tree.bodies[i]), &motion.omega);
-        let place = add(&motion.place, &apply(graph, &motion.rotation, &centre));
-        let momentum = scaled(self.tree.bodies[i].mass, &apply(graph, &motion.rotation, &velocity));
-        Some(add(&cross(&place, &momentum), &apply(graph, &motion.rotation, &spin)))
+        let (place, momentum) = (self.mass_centre(body)?, self.momentum(body)?);
+        Some(add(&cross(&place, &momentum), &self.spin(body)?))
     }
 
     /// The centre of mass Σ m r_c/Σ m of all bodies, along the axes of the world.

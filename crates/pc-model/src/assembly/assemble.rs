@@ -151,6 +151,8 @@ impl<'g> Assembler<'g, '_> {
         let document = self.model.document();
         let lagrangian = self.lagrangian(&x_dot)?;
         let bodies = self.bodies(&eta, &x_dot)?;
+        let of_forces: Result<_, _> = bodies.iter().map(|body| body.force_function(&frame, &eta)).collect();
+        self.scope.force_functions = of_forces.map_err(|error| document.derivation_error(error))?;
         let changing_masses = self.changing_masses()?;
         let tree = self.tree(&x_dot)?;
         let stops = self.stops(tree.as_ref())?;

@@ -1,7 +1,7 @@
 //! The bodies of a model: their expressions are resolved, and errors are located in the file.
 
 use pc_algebra::affine;
-use pc_mech::{Expr, Inertia, Matrix, Particle, RigidBody};
+use pc_mech::{Expr, Frame, Inertia, Matrix, MechError, Particle, RigidBody};
 
 use crate::assembly::assembler::Assembler;
 use crate::diagnostics::error::ModelError;
@@ -15,6 +15,16 @@ pub(super) enum SystemBody<'g> {
     Particle(Particle<'g>),
     /// A body with an orientation.
     Rigid(Box<RigidBody<'g>>),
+}
+
+impl<'g> SystemBody<'g> {
+    /// The force function of the force on the body, a term of L.
+    pub(super) fn force_function(&self, frame: &Frame<'g>, eta: &[Expr<'g>]) -> Result<Expr<'g>, MechError> {
+        match self {
+            SystemBody::Particle(particle) => particle.force_function_of(frame, eta),
+            SystemBody::Rigid(body) => body.force_function_of(frame, eta),
+        }
+    }
 }
 
 impl<'g> Assembler<'g, '_> {

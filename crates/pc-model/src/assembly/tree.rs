@@ -1,13 +1,12 @@
 //! Bodies on joints: their expressions are resolved, and errors are located in the file.
 
-use pc_mech::{Expr, Inertia, Tree};
+use pc_mech::{Expr, Tree};
 
 use crate::assembly::assembler::Assembler;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
-use crate::document::{self, Expression, JointRotation};
+use crate::document::{Expression, JointRotation};
 use crate::names::points::hung;
-use crate::names::stage::Stage;
 
 /// The greatest allowed deviation of a matrix of constants from a rotation, and of the length of a quaternion
 /// from 1: the rounding error of numbers written with nine digits.
@@ -23,19 +22,7 @@ impl<'g> Assembler<'g, '_> {
         }
         let mut bodies = Vec::with_capacity(document.tree.len());
         for body in &document.tree {
-            let mut made = hung(body, self.scope.joint(&body.joint)?);
-            if let Some(mass) = &body.mass {
-                made = made.mass(self.scope.resolve(mass, Stage::Joint)?);
-            }
-            if let Some(center) = &body.center {
-                made = made.centre(self.scope.constants(center)?);
-            }
-            if let Some(inertia) = &body.inertia {
-                made = made.inertia(match inertia {
-                    document::Inertia::Principal(moments) => Inertia::from(self.scope.constants(moments)?),
-                    document::Inertia::Full(entries) => Inertia::from(self.scope.constants(entries)?),
-                });
-            }
+            let mut made = self.scope.massive(body)?;
             if let Some(force) = &body.force {
                 made = made.force(self.all_dynamic(force, x_dot)?);
             }

@@ -96,6 +96,12 @@ impl MeaningError {
             MeaningError::JointForceUnknown { .. } => {
                 "forces of joints are outputs of models whose bodies all hang on joints, without constraints".into()
             }
+            MeaningError::NoFixedAxes { .. } => {
+                "give the body a `rotation` in place of `angular_velocity`".into()
+            }
+            MeaningError::NoGround { .. } => {
+                "the zero-moment point is one of the plane z = 0: give [gravity] a component along z".into()
+            }
             MeaningError::ForceNotDetermined { .. } => {
                 "use coordinates in which the body moves independently, and constraints that tie it".into()
             }

@@ -126,6 +126,22 @@ pub enum MeaningError {
         /// Why.
         cause: &'static str,
     },
+    /// An angular momentum along fixed axes of a body that has its angular velocity along axes of its own.
+    #[error(
+        "`{name}` is not known: the angular velocity of the body `{body}` is given along axes of unknown direction"
+    )]
+    NoFixedAxes {
+        /// The component.
+        name: String,
+        /// The body.
+        body: String,
+    },
+    /// A zero-moment point without weight that holds the bodies on the plane.
+    #[error("`{name}` is not known: no weight acts along z")]
+    NoGround {
+        /// The component.
+        name: String,
+    },
     /// A definition without velocities.
     #[error("`{text}` contains no velocity, so it defines no quasi-velocity")]
     NoVelocity {

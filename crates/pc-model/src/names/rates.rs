@@ -96,6 +96,17 @@ impl<'g> Scope<'g, '_> {
             return Err(self.error(expression, span, fault));
         }
         let value = self.ast(expression, inner, stage)?;
+        self.rate_of(expression, span, value, stage)
+    }
+
+    /// The rate of a value that the part `span` of an expression denotes.
+    pub(super) fn rate_of(
+        &mut self,
+        expression: &Expression,
+        span: Span,
+        value: Expr<'g>,
+        stage: Stage,
+    ) -> Result<Expr<'g>, ModelError> {
         for input in &self.document.inputs {
             let name = &input.name.text;
             if value.depends_on(self.graph.symbol(name)) && self.rate_of_input(name).is_none() {

@@ -13,6 +13,7 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::source::{Place, Source};
 use crate::document::{Body, Document, Expression, InputValue, NamedExpression, TreeBody};
 use crate::names::functions::call;
+use crate::names::momenta::Moving;
 use crate::names::stage::Stage;
 
 /// A part of the model as written, with its expression; these parts are searched when a value is not a
@@ -67,6 +68,10 @@ pub(crate) struct Scope<'g, 'd> {
     pub(super) arguments: Vec<(&'d str, Expr<'g>)>,
     /// The components of points, which are all computed when one of them is used.
     pub(super) points: Option<HashMap<String, Expr<'g>>>,
+    /// The motions of all bodies, which are computed when one of them is used.
+    pub(super) moving: Option<Vec<Moving<'g>>>,
+    /// The force functions of the forces on bodies that are placed by their position, in their order.
+    pub(crate) force_functions: Vec<Expr<'g>>,
     /// The forces and torques of reactions that are used, each with a place in the file.
     pub(crate) resultants: Vec<(Expr<'g>, Place)>,
     /// The inputs whose rates are in use.
@@ -108,6 +113,8 @@ impl<'g, 'd> Scope<'g, 'd> {
             written: Vec::new(),
             arguments: Vec::new(),
             points: None,
+            moving: None,
+            force_functions: Vec::new(),
             resultants: Vec::new(),
             rates_in_use: Vec::new(),
             of_joints: Vec::new(),
@@ -375,6 +382,14 @@ impl<'g, 'd> Scope<'g, 'd> {
             }
             _ if self.is_other(name) => Ok(self.graph.symbol(name)),
             _ => {
+                if let Some(observed) = self.observed(name) {
+                    return match stage {
+                        Stage::Event | Stage::Observation => {
+                            self.of_motion(expression, span, observed, stage)
+                        }
+                        _ => refuse(self),
+                    };
+                }
                 let fault = |_| MeaningError::UnknownName { name: name.to_owned(), known: self.known() };
                 Err(self.error(expression, span, fault))
             }

@@ -14,6 +14,7 @@ mod inputs;
 mod jumps;
 mod kinematics;
 mod large;
+mod momenta;
 mod parameters;
 #[path = "../../../../tests/src/classical/random.rs"]
 mod random;

@@ -8,6 +8,7 @@ use crate::error::{Irregular, Unable};
 use crate::numbers::number::Number;
 use crate::numbers::rounding::Rounding;
 use crate::text::body::{Body, Turning};
+use crate::text::momentum::OfBody;
 use crate::text::resultant::Resultants;
 use crate::text::term::{Function, Term};
 use crate::text::text::{Text, Velocities};
@@ -211,6 +212,7 @@ impl<'a, T: Number> Point<'a, T> {
                 let known = self.resultants.as_ref().ok_or(Unable::NoReaction)?;
                 T::constant(known.get(*resultant).value)
             }
+            Term::OfBody(body, quantity) => self.of_body(&self.text.bodies[*body], *quantity)?,
             Term::Rate(inner) => self.rate(inner)?,
             Term::Sum(terms) => {
                 let mut sum = T::constant(0.0);
@@ -386,6 +388,29 @@ impl<'a, T: Number> Point<'a, T> {
     /// ṙ
     pub(crate) fn velocity(&self, body: &Body) -> Result<Vec<T>, Irregular> {
         body.position.iter().map(|part| self.rate(part)).collect()
+    }
+
+    fn of_body(&self, body: &Body, quantity: OfBody) -> Result<T, Irregular> {
+        match quantity {
+            OfBody::Mass => self.value(&body.mass),
+            OfBody::Place(i) => self.value(&body.position[i]),
+            OfBody::Kinetic => self.kinetic_energy(body),
+            OfBody::Potential => Ok(-self.force_function(body)?),
+            OfBody::Spin(i) => self.spin(body, i),
+        }
+    }
+
+    /// A component of R I ω; zero for a body without inertia.
+    fn spin(&self, body: &Body, i: usize) -> Result<T, Irregular> {
+        let mut spin = T::constant(0.0);
+        if let (Some(inertia), Some(Turning::Rotation(rotation))) = (&body.inertia, &body.turning) {
+            let (omega, inertia) = (self.angular_velocity(body)?, self.all(inertia)?);
+            for j in 0..3 {
+                let along = (0..3).fold(T::constant(0.0), |sum, l| sum + inertia[3 * j + l] * omega[l]);
+                spin += self.value(&rotation[3 * i + j])? * along;
+            }
+        }
+        Ok(self.round(spin))
     }
 
     /// m v²/2 + ω·Iω/2

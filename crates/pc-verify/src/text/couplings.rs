@@ -158,6 +158,7 @@ impl<'a> Reader<'a> {
         match term {
             Term::Number(_) | Term::Time | Term::Parameter(_) | Term::Reaction(_) | Term::Resultant(_) => {}
             Term::Coordinate(i) => all.coordinates.insert(*i),
+            Term::OfBody(..) => self.add_known(None, all),
             Term::Velocity(i) => self.add_velocity(*i, self.is_quasi(), all),
             Term::QuasiVelocity(s) => self.add_velocity(*s, !self.is_quasi(), all),
             Term::State(_) => all.states = true,

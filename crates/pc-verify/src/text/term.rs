@@ -5,6 +5,7 @@ use pc_expr::parse::{Ast, AstKind, Factor, Sign};
 use pc_model::document::GivenFunction;
 
 use crate::error::Unable;
+use crate::text::momentum::{self, OfBody};
 use crate::text::resultant::Resultant;
 
 /// An expression with names replaced by indices.
@@ -25,6 +26,8 @@ pub(crate) enum Term {
     Reaction(usize),
     /// A component of a reaction on a body.
     Resultant(Resultant),
+    /// A quantity of the body with this number.
+    OfBody(usize, OfBody),
     /// The total time derivative of a term.
     Rate(Box<Term>),
     /// The terms of a sum; those marked `true` are subtracted.
@@ -119,7 +122,7 @@ impl Term {
             Some(has?.contains(&true))
         };
         match self {
-            Term::Velocity(_) | Term::QuasiVelocity(_) | Term::Rate(_) => Some(true),
+            Term::Velocity(_) | Term::QuasiVelocity(_) | Term::Rate(_) | Term::OfBody(..) => Some(true),
             Term::Number(_)
             | Term::Time
             | Term::Coordinate(_)
@@ -174,6 +177,8 @@ pub(crate) struct Names {
     pub(crate) arguments: Vec<(String, Term)>,
     /// The names of components of points, with the terms they denote.
     pub(crate) points: Vec<(String, Term)>,
+    /// The acceleration of gravity.
+    pub(crate) gravity: Vec<Term>,
 }
 
 impl Names {
@@ -262,6 +267,7 @@ impl Names {
                 .or_else(|| self.point(name))
                 .or_else(reaction)
                 .or_else(|| Resultant::named(name, &self.constraints, &self.bodies).map(Term::Resultant))
+                .or_else(|| momentum::named(name, &self.bodies, &self.gravity))
                 .ok_or_else(|| unknown(name)),
         }
     }

@@ -84,7 +84,7 @@ impl Text {
         let tree = Tree::of(document);
         let labels = document.bodies.iter().map(|body| &body.name);
         let labels = labels.chain(document.tree.iter().map(|body| &body.name));
-        let names = Names {
+        let mut names = Names {
             coordinates: named(&document.coordinates),
             quasi_velocities: document.quasi_velocities.iter().map(|eta| eta.name.text.clone()).collect(),
             parameters: model.parameters().map(|(name, _)| name.to_owned()).collect(),
@@ -96,6 +96,8 @@ impl Text {
             points: tree.points(),
             ..Names::default()
         };
+        let gravity = document.gravity.iter().flat_map(|gravity| &gravity.acceleration);
+        names.gravity = gravity.map(|part| names.resolve(&part.ast)).collect::<Result<_, _>>()?;
         let term = |expression: &Expression| names.resolve(&expression.ast);
         let terms = |list: &[Expression]| list.iter().map(term).collect::<Result<Vec<Term>, Unable>>();
         let energy = document.lagrangian.as_ref();
@@ -134,7 +136,7 @@ impl Text {
             tables: tables.into_iter().map(|(place, table)| (place, Arc::clone(table))).collect(),
             shifts: Vec::new(),
             state_rates: document.states.iter().map(|z| term(&z.rate)).collect::<Result<_, _>>()?,
-            gravity: document.gravity.as_ref().map_or(Ok(Vec::new()), |g| terms(&g.acceleration))?,
+            gravity: names.gravity.clone(),
             definitions: tree.definitions(&names)?,
             velocities: velocities(document, &tree, &names)?,
             brackets: brackets(document, &names)?,

@@ -6,5 +6,6 @@ mod builtin;
 mod energies;
 mod forces;
 mod large;
+mod momenta;
 mod resultants;
 mod sizes;

@@ -1,5 +1,6 @@
 //! Mass points.
 
+use pc_algebra::Frame;
 use pc_expr::{Expr, Number};
 
 use crate::error::{MechError, shape};
@@ -61,6 +62,22 @@ impl<'g> Particle<'g> {
     #[must_use]
     pub fn named(self, name: impl Into<String>) -> Particle<'g> {
         Particle { name: Some(name.into()), ..self }
+    }
+
+    /// U(t, x), the force function of its force or of those components of it that have one; a term of L.
+    ///
+    /// # Errors
+    /// [`BodyError::OfVelocities`](crate::BodyError::OfVelocities) for a mass or position with velocities;
+    /// [`ShapeError`](crate::ShapeError) for a force that has not as many components as the position.
+    pub fn force_function_of(
+        &self,
+        frame: &Frame<'g>,
+        quasi_velocities: &[Expr<'g>],
+    ) -> Result<Expr<'g>, MechError> {
+        match &self.force {
+            None => Ok(Expr::ZERO),
+            Some(_) => Ok(self.share(&Moving::new(frame, quasi_velocities, &[]))?.force_function),
+        }
     }
 
     pub(crate) fn name(&self) -> Option<&str> {

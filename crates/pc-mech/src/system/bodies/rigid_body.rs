@@ -1,6 +1,6 @@
 //! Rigid bodies.
 
-use pc_algebra::{Matrix, Neighbourhood, affine, determinant};
+use pc_algebra::{Frame, Matrix, Neighbourhood, affine, determinant};
 use pc_expr::Expr;
 
 use crate::error::{BodyError, MechError, shape};
@@ -150,6 +150,18 @@ impl<'g> RigidBody<'g> {
     #[must_use]
     pub fn named(self, name: impl Into<String>) -> RigidBody<'g> {
         RigidBody { centre: self.centre.named(name), ..self }
+    }
+
+    /// U(t, x), the force function of its force; see [`Particle::force_function_of`](crate::Particle::force_function_of).
+    ///
+    /// # Errors
+    /// As there.
+    pub fn force_function_of(
+        &self,
+        frame: &Frame<'g>,
+        quasi_velocities: &[Expr<'g>],
+    ) -> Result<Expr<'g>, MechError> {
+        self.centre.force_function_of(frame, quasi_velocities)
     }
 
     pub(crate) fn name(&self) -> Option<&str> {
