@@ -4,8 +4,9 @@
 //! expression may contain, depending on its place in the text. `scope` gives the meaning of a name in that
 //! place, `functions` and `declared` the meaning of a function, and `rates` the meaning of derivatives with respect to time;
 //! `definitions` resolves definitions in their order; `points` expresses points of bodies with joints as
-//! functions of the coordinates.
+//! functions of the coordinates, and `contacts` where a body touches a plane.
 
+pub(crate) mod contacts;
 pub(crate) mod declared;
 pub(crate) mod definitions;
 pub(crate) mod functions;

@@ -4,6 +4,7 @@
 //! reactions on them (`resultant`); `couplings` says which velocities occur together.
 
 pub(crate) mod body;
+pub(crate) mod contacts;
 pub(crate) mod couplings;
 pub(crate) mod resultant;
 pub(crate) mod term;

@@ -106,6 +106,7 @@ impl Flow {
         let all = assembly.quasi_velocities_of(free)?;
         let reading = Reading::new(assembly, form, &all, transform)?;
         let explicit = reading.transform.is_none() && form.matrix.is_none() && !assembly.has_multipliers();
+        let explicit = explicit && !assembly.has_events_on_reactions();
         let slopes = (explicit && model.differentiates_by_parameters())
             .then(|| EventSlopes::new(model, assembly, free, &all))
             .transpose()?;
@@ -120,7 +121,7 @@ impl Flow {
         };
         let watch = watch.as_ref().unwrap_or_else(|| motion.in_quasi_velocities());
         Ok(Flow {
-            events: FlowEvents::new(model, assembly, &reading, watch, slopes)?,
+            events: FlowEvents::new(model, assembly, &reading, (watch, &motion), slopes)?,
             names: x
                 .iter()
                 .chain(declared)

@@ -12,6 +12,7 @@ use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::source::{Place, Source};
 use crate::document::{Body, Document, Expression, NamedExpression, TreeBody};
+use crate::names::contacts::Contacts;
 use crate::names::functions::call;
 use crate::names::stage::Stage;
 
@@ -65,6 +66,8 @@ pub(crate) struct Scope<'g, 'd> {
     pub(crate) written: Vec<Written<'g>>,
     /// The arguments of the function whose value is being resolved.
     pub(super) arguments: Vec<(&'d str, Expr<'g>)>,
+    /// The contacts used so far.
+    pub(super) contacts: Contacts<'g>,
     /// The components of points, which are all computed when one of them is used.
     pub(super) points: Option<HashMap<String, Expr<'g>>>,
     /// The forces and torques of reactions that are used, each with a place in the file.
@@ -99,6 +102,7 @@ impl<'g, 'd> Scope<'g, 'd> {
             context: Context::default(),
             written: Vec::new(),
             arguments: Vec::new(),
+            contacts: Contacts::default(),
             points: None,
             resultants: Vec::new(),
             of_joints: Vec::new(),
@@ -276,7 +280,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         Ok(product)
     }
 
-    fn name(
+    pub(super) fn name(
         &mut self,
         expression: &Expression,
         span: Span,
@@ -318,6 +322,10 @@ impl<'g, 'd> Scope<'g, 'd> {
         let is_state = document.states.iter().any(|state| state.name.text == name);
         let is_input = document.inputs.iter().any(|input| input.name.text == name);
         let is_point = self.is_point(name);
+        if let Some((number, component)) = self.contact_of(name) {
+            let known = if stage.has_velocities() { self.contact(number, component)? } else { None };
+            return known.map_or_else(|| refuse(self), Ok);
+        }
         match stage {
             _ if is_input => match stage {
                 Stage::Parameter
@@ -354,6 +362,9 @@ impl<'g, 'd> Scope<'g, 'd> {
             _ if is_point => self.point(name),
             _ if is_coordinate || is_quasi_velocity || is_state => Ok(self.graph.symbol(name)),
             Stage::Action if self.is_constant(name) => Ok(self.graph.symbol(name)),
+            Stage::Observation | Stage::Event if self.reaction_of_contact(name).is_some() => {
+                Ok(self.reaction_of_contact(name).unwrap_or(Expr::ZERO))
+            }
             Stage::Observation if self.is_reaction(name) => Ok(self.graph.symbol(name)),
             Stage::Observation if self.is_resultant(name) => {
                 let symbol = self.graph.symbol(name);

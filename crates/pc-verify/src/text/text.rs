@@ -5,10 +5,11 @@ use std::sync::Arc;
 use pc_expr::Deadline;
 use pc_mech::Table;
 use pc_model::Model;
-use pc_model::document::{AlgebraDefinition, Document, Expression, NamedExpression, Orientation};
+use pc_model::document::{AlgebraDefinition, Contact, Document, Expression, NamedExpression, Orientation};
 
 use crate::error::Unable;
 use crate::text::body::{Body, Turning, matrix};
+use crate::text::contacts;
 use crate::text::term::{Declared, Names, Term};
 use crate::text::tree::Tree;
 
@@ -82,7 +83,7 @@ impl Text {
         let tree = Tree::of(document);
         let labels = document.bodies.iter().map(|body| &body.name);
         let labels = labels.chain(document.tree.iter().map(|body| &body.name));
-        let names = Names {
+        let mut names = Names {
             coordinates: named(&document.coordinates),
             quasi_velocities: document.quasi_velocities.iter().map(|eta| eta.name.text.clone()).collect(),
             parameters: model.parameters().map(|(name, _)| name.to_owned()).collect(),
@@ -92,8 +93,10 @@ impl Text {
             bodies: labels.map(|name| name.text.clone()).collect(),
             functions: document.functions.iter().map(Declared::of).collect(),
             points: tree.points(),
+            forces: document.contacts.iter().flat_map(Contact::reactions).collect(),
             ..Names::default()
         };
+        names.contacts = contacts::components(document, &tree, &names)?;
         let term = |expression: &Expression| names.resolve(&expression.ast);
         let terms = |list: &[Expression]| list.iter().map(term).collect::<Result<Vec<Term>, Unable>>();
         let energy = document.lagrangian.as_ref();
