@@ -1295,6 +1295,28 @@ pc_status pc_model_set_loop_length(pc_model *model,
                                    pc_error **error);
 
 /**
+ * Adds a contact of a body with a plane. The shape is disc, sphere or ellipsoid, and the motion rolls
+ * or slides. pc_model_set_contact sets the size of the shape, and what else the text may say.
+ */
+pc_status pc_model_add_contact(pc_model *model,
+                               const char *name,
+                               const char *body,
+                               const char *shape,
+                               const char *motion,
+                               pc_error **error);
+
+/**
+ * Sets an entry of a contact: radius, with 1 value; axis, semi_axes, at, normal or through, with 3;
+ * attitude, with 9; keeps, with the value true. The values are expressions, those of an axis numbers.
+ */
+pc_status pc_model_set_contact(pc_model *model,
+                               const char *name,
+                               const char *entry,
+                               const char *const *values,
+                               size_t length,
+                               pc_error **error);
+
+/**
  * Sets a function S of time, coordinates and constants that is claimed to solve
  * Hamilton–Jacobi's equation; pc_system_theory examines the claim, and compares the motion from
  * the start with the one that Jacobi's theorem gives. Motions do not depend on this function.

@@ -297,6 +297,18 @@ public:
     {
         return say(pc_model_set_loop_length, name.c_str(), length.c_str());
     }
+    /// Adds a contact of a body with a plane.
+    model &contact(const std::string &name, const std::string &body, const std::string &shape,
+                   const std::string &motion)
+    {
+        return say(pc_model_add_contact, name.c_str(), body.c_str(), shape.c_str(), motion.c_str());
+    }
+    model &contact_entry(const std::string &name, const std::string &entry,
+                         const std::vector<std::string> &values)
+    {
+        const std::vector<const char *> texts = of_texts(values);
+        return say(pc_model_set_contact, name.c_str(), entry.c_str(), texts.data(), texts.size());
+    }
 
     model &integral(const std::string &name, const std::string &expression)
     {

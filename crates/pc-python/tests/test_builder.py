@@ -180,6 +180,20 @@ def test_bodies_on_joints_are_those_of_a_text() -> None:
     assert "<canvas" in motion.animate().html
 
 
+def test_contacts_are_those_of_a_text() -> None:
+    builder = chetaev.Model.builder("slope").gravity([0, 0, -9.81]).coordinate("ball_x", "0.1/cos(0.3)")
+    builder = builder.body("ball", joint=chetaev.Planar(axis=[0, 1, 0]), mass=2.0, inertia=[0, 0.008, 0])
+    builder = builder.contact(
+        "slope", "ball", "sphere", "rolls", radius=0.1, normal=["sin(0.3)", 0, "cos(0.3)"], keeps=True
+    )
+    assert "keeps = true" in builder.text or '"keeps" = true' in builder.text
+    motion = builder.simulation(t_end=1.0).build().system().run()
+    # The slides of the joint are along z and x. It accelerates at (5/7) g sin s along the slope, and the ball weighs m g cos s on it.
+    along = 5 / 14 * 9.81 * np.sin(0.3)
+    assert motion["ball_y"][-1] == pytest.approx(along * np.cos(0.3), rel=1e-9)
+    assert motion["N_slope"] == pytest.approx(2 * 9.81 * np.cos(0.3), rel=1e-9)
+
+
 def test_every_joint_is_written() -> None:
     joints = [
         chetaev.Fixed(),

@@ -1,6 +1,7 @@
 //! Remarks on constraints and energy.
 
 use pc_model::Assembly;
+use pc_nonholo::Redundant;
 
 /// The constraints that were dropped, each with the reason.
 pub fn dropped(assembly: &Assembly<'_>) -> Vec<(String, String)> {
@@ -8,8 +9,8 @@ pub fn dropped(assembly: &Assembly<'_>) -> Vec<(String, String)> {
         [] => "holds whatever the motion".to_owned(),
         names => format!("follows from {}", names.join(", ")),
     };
-    let redundant = assembly.constraints.redundant().iter();
-    redundant.map(|redundant| (redundant.constraint.clone(), reason(&redundant.follows_from))).collect()
+    let named = |redundant: &Redundant| (redundant.constraint.clone(), reason(&redundant.follows_from));
+    assembly.dropped_constraints().map(named).collect()
 }
 
 /// The remark on bodies whose masses change in time, if there are any.

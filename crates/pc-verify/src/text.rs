@@ -4,6 +4,7 @@
 //! reactions on them (`resultant`); `momentum` holds what bodies have as they move; `couplings` says which velocities occur together.
 
 pub(crate) mod body;
+pub(crate) mod contacts;
 pub(crate) mod couplings;
 pub(crate) mod momentum;
 pub(crate) mod resultant;

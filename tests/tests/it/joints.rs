@@ -2,6 +2,7 @@
 //! their reactions, what is refused and with which words, and robots in URDF.
 
 mod by_hand;
+mod contacts;
 mod library;
 mod loops;
 mod loops_by_joints;

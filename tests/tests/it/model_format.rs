@@ -128,12 +128,16 @@ fn the_page_names_every_section_key_function_and_algebra() {
             look_for("### `[[draw]]`\n".to_owned());
             continue;
         }
-        let suffix = if matches!(section, "bodies" | "events" | "points" | "loops") { ".NAME" } else { "" };
+        let suffix = if matches!(section, "bodies" | "events" | "points" | "loops" | "contacts") {
+            ".NAME"
+        } else {
+            ""
+        };
         look_for(format!("### `[{section}{suffix}]`\n"));
     }
     let sections =
         ["model", "algebra", "lagrangian", "gravity", "simulation", "bodies.a", "events.a", "points.a"];
-    for place in sections.into_iter().chain(["loops.a", "hamilton_jacobi"]) {
+    for place in sections.into_iter().chain(["loops.a", "contacts.a", "hamilton_jacobi"]) {
         allowed(&format!("[{place}]\nwrong = 1\n")).iter().for_each(|key| look_for(format!("`{key}`")));
     }
     for (place, joint) in [("center = [0, 0, 0]\nwrong", "1"), ("joint", "{ wrong = 1 }")] {

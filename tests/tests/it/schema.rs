@@ -99,6 +99,7 @@ const OBJECTS: &[(&str, &str)] = &[
     ("/definitions/joint", "[bodies.a]\njoint = { WRONG = 1 }"),
     ("/definitions/point", "[points.a]\nWRONG = 1"),
     ("/definitions/loop", "[loops.a]\nWRONG = 1"),
+    ("/definitions/contact", "[contacts.a]\nWRONG = 1"),
     ("/definitions/shape/oneOf/0", "[[draw]]\nkind = \"point\"\nWRONG = 1"),
     ("/definitions/shape/oneOf/1", "[[draw]]\nkind = \"line\"\nWRONG = 1"),
     ("/definitions/shape/oneOf/2", "[[draw]]\nkind = \"disc\"\nWRONG = 1"),
@@ -119,6 +120,8 @@ const CHOICES: &[(&str, &str)] = &[
     ("/definitions/constraint/properties/kind", "[constraints]\na = { kind = \"WRONG\" }"),
     ("/definitions/joint/properties/kind", "[bodies.a]\njoint = { kind = \"WRONG\" }"),
     ("/definitions/loop/properties/kind", "[loops.a]\nkind = \"WRONG\""),
+    ("/definitions/contact/properties/shape", "[contacts.a]\nshape = \"WRONG\""),
+    ("/definitions/contact/properties/motion", "[contacts.a]\nmotion = \"WRONG\""),
     ("/definitions/event/properties/direction", "[events.a]\ndirection = \"WRONG\""),
 ];
 

@@ -1,5 +1,5 @@
-//! Bodies that are attached to others by joints, points of such bodies, and loops, specified call
-//! by call.
+//! Bodies that are attached to others by joints, points of such bodies, loops, and contacts,
+//! specified call by call.
 
 use std::ffi::c_char;
 
@@ -10,7 +10,7 @@ use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{text, texts};
 use crate::ffi::status::pc_status;
-use crate::machinery::draft::{Draft, Section, list, quoted};
+use crate::machinery::draft::{Draft, Section, list, number, quoted};
 
 /// Adds a body that is attached to another, or to the world if `parent` is null, by a joint of this
 /// kind: fixed, revolute, prismatic, screw, cylindrical, universal, planar, spherical, free. The
@@ -470,4 +470,66 @@ pub unsafe extern "C" fn pc_model_set_loop_length(
     let write = |draft: &mut Draft| put(draft, (name, "name"), Section::Loops, &["length"], length);
     // SAFETY: as the preamble demands.
     unsafe { draft(model, error, "pc_model_set_loop_length", write) }
+}
+
+/// Adds a contact of a body with a plane. The shape is disc, sphere or ellipsoid, and the motion rolls
+/// or slides. pc_model_set_contact sets the size of the shape, and what else the text may say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_add_contact(
+    model: *mut pc_model,
+    name: *const c_char,
+    body: *const c_char,
+    shape: *const c_char,
+    motion: *const c_char,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let (name, body) = unsafe { (text(name, "name")?, text(body, "body")?) };
+        // SAFETY: as the preamble demands.
+        let (shape, motion) = unsafe { (text(shape, "shape")?, text(motion, "motion")?) };
+        draft.add(Section::Contacts, &[name, "body"], quoted(body));
+        draft.add(Section::Contacts, &[name, "shape"], quoted(shape));
+        draft.add(Section::Contacts, &[name, "motion"], quoted(motion));
+        Ok(())
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_add_contact", write) }
+}
+
+/// Sets an entry of a contact: radius, with 1 value; axis, semi_axes, at, normal or through, with 3;
+/// attitude, with 9; keeps, with the value true. The values are expressions, those of an axis numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pc_model_set_contact(
+    model: *mut pc_model,
+    name: *const c_char,
+    entry: *const c_char,
+    values: *const *const c_char,
+    length: usize,
+    error: *mut *mut pc_error,
+) -> pc_status {
+    let write = |draft: &mut Draft| {
+        // SAFETY: null or text, as the preamble demands.
+        let entry = unsafe { text(entry, "entry") }?;
+        // SAFETY: null or a list of texts, as the preamble demands.
+        let values = unsafe { texts(values, length, "values") }?;
+        let written = || Ok(entry_of_contact(entry, &values));
+        put(draft, (name, "name"), Section::Contacts, &[entry], written)
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { draft(model, error, "pc_model_set_contact", write) }
+}
+
+/// The values of an entry as TOML: numbers and `true` as such, if they are expected, and all else as texts.
+fn entry_of_contact(entry: &str, values: &[&str]) -> String {
+    let parsed = |text: &&str| text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
+    let numbers: Option<Vec<f64>> = values.iter().map(parsed).collect();
+    match (entry, values, numbers) {
+        ("keeps", [word @ ("true" | "false")], _) => (*word).to_owned(),
+        ("axis", _, Some(axis)) => {
+            format!("[{}]", axis.into_iter().map(number).collect::<Vec<_>>().join(", "))
+        }
+        ("radius" | "keeps", [value], _) => quoted(value),
+        _ => list(values),
+    }
 }

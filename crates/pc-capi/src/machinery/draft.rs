@@ -41,6 +41,7 @@ pub(crate) enum Section {
     Bodies,
     Points,
     Loops,
+    Contacts,
     Gravity,
     Forces,
     Integrals,
@@ -50,7 +51,7 @@ pub(crate) enum Section {
     Simulation,
 }
 
-const SECTIONS: [(Section, &str); 22] = [
+const SECTIONS: [(Section, &str); 23] = [
     (Section::Heading, "model"),
     (Section::Parameters, "parameters"),
     (Section::Inputs, "inputs"),
@@ -66,6 +67,7 @@ const SECTIONS: [(Section, &str); 22] = [
     (Section::Bodies, "bodies"),
     (Section::Points, "points"),
     (Section::Loops, "loops"),
+    (Section::Contacts, "contacts"),
     (Section::Gravity, "gravity"),
     (Section::Forces, "forces"),
     (Section::Integrals, "integrals"),

@@ -79,6 +79,18 @@ fn closed(
     })
 }
 
+/// Sets an entry of a contact.
+fn touching(model: &Model, name: &str, entry: &str, values: &[&str]) -> Result<(), Refusal> {
+    let (name, entry) = (c(name), c(entry));
+    let values: Vec<_> = values.iter().map(|value| c(value)).collect();
+    let pointers: Vec<*const c_char> = values.iter().map(|value| value.as_ptr()).collect();
+    // SAFETY: a live model, and texts that live as long as the call.
+    call(|error| unsafe {
+        let (name, entry) = (name.as_ptr(), entry.as_ptr());
+        pc_model_set_contact(model.0, name, entry, pointers.as_ptr(), pointers.len(), error)
+    })
+}
+
 /// The keys that the reader knows after the text `before`: its refusal of an unknown key lists
 /// them.
 fn keys(before: &str) -> BTreeSet<String> {
@@ -167,6 +179,19 @@ fn everything() -> Model {
     closed(&model, "closed", "revolute", ["arm", "world"], &["0", "0", "-1", "m", "0", "0"]).unwrap();
     say!(model, pc_model_set_loop_axes, "closed"; first.as_ptr(), second.as_ptr()).unwrap();
     say!(model, pc_model_set_loop_length, "closed", "m").unwrap();
+    say!(model, pc_model_add_contact, "ground", "arm", "disc", "rolls").unwrap();
+    for (entry, values) in [
+        ("radius", &["m"][..]),
+        ("axis", &["0", "0", "1"]),
+        ("semi_axes", &["m", "m", "1"]),
+        ("at", &["0", "0", "m"]),
+        ("attitude", &["1", "0", "0", "0", "1", "0", "0", "0", "1"]),
+        ("normal", &["0", "0", "m"]),
+        ("through", &["0", "m", "0"]),
+        ("keeps", &["true"]),
+    ] {
+        touching(&model, "ground", entry, values).unwrap();
+    }
     say!(model, pc_model_add_force, "v", "1").unwrap();
     say!(model, pc_model_add_integral, "half", "v/2").unwrap();
     say!(model, pc_model_add_output, "place", "x").unwrap();
@@ -230,6 +255,7 @@ fn there_is_a_call_for_every_key_of_the_text() {
         ("[bodies.b]\njoint.kind = \"fixed\"\n", "bodies", Some("arm")),
         ("[points.p]\n", "points", Some("tip")),
         ("[loops.l]\n", "loops", Some("closed")),
+        ("[contacts.c]\n", "contacts", Some("ground")),
         ("[events.e]\n", "events", Some("hit")),
     ] {
         assert_eq!(written(&text, header, table), keys(before), "{text}");
@@ -318,6 +344,28 @@ fn joints_reach_the_text() {
     assert!(text(&model).contains("[loops]\n\"tip\".\"kind\" = \"rod\"\n"));
     let refusal = turns(&model, "upper", "zxz", &["1"]).unwrap_err();
     assert_eq!(refusal.message, "each axis needs one angle: there are 3 axes and 1 angles");
+}
+
+/// A ball that rolls down a slope without slipping, (5/7) g sin s along it. The first slide of its joint is along z.
+#[test]
+fn contacts_reach_the_text() {
+    let model = empty("A ball on a slope");
+    say!(model, pc_model_set_gravity, "0", "0", "-9.81").unwrap();
+    say!(model, pc_model_add_jointed_body, "ball", "world", "planar").unwrap();
+    say!(model, pc_model_set_joint_axis, "ball"; [0.0, 1.0, 0.0].as_ptr()).unwrap();
+    say!(model, pc_model_set_body_mass, "ball", "2").unwrap();
+    list(&model, pc_model_set_body_inertia, "ball", &["0.008", "0.008", "0.008"]).unwrap();
+    say!(model, pc_model_add_coordinate, "ball_x"; 0.1 / 0.3f64.cos()).unwrap();
+    say!(model, pc_model_add_contact, "slope", "ball", "sphere", "rolls").unwrap();
+    touching(&model, "slope", "radius", &["0.1"]).unwrap();
+    touching(&model, "slope", "normal", &["sin(0.3)", "0", "cos(0.3)"]).unwrap();
+    assert!(text(&model).contains("[contacts]\n\"slope\".\"body\" = \"ball\"\n"));
+    let system = model.system(PC_POINCARE).unwrap();
+    let (_, y) = system.start();
+    let rates = system.at(pc_system_rhs, 0.0, &y, y.len()).unwrap();
+    let expected = 5.0 / 7.0 * 9.81 * 0.3f64.sin() * 0.3f64.cos(); // the horizontal component
+    let x = rates[y.len() / 2..].iter().any(|rate| (rate - expected).abs() < 1e-12);
+    assert!(x, "{rates:?}");
 }
 
 fn start(model: &Model) -> Vec<f64> {

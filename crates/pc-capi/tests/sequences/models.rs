@@ -125,7 +125,7 @@ unsafe fn say(
     let entries = entries.as_ptr();
     // SAFETY: as promised.
     unsafe {
-        match function % 83 {
+        match function % 85 {
             0..4 => pc_model_add_coordinate(model, a, x, error),
             4..8 => pc_model_set_kinetic(model, b, error),
             8 => pc_model_add_quasi_velocity(model, a, b, x, error),
@@ -190,6 +190,11 @@ unsafe fn say(
             80 => pc_model_set_joint_limits(model, a, b, z, b, if yes == 1 { z } else { ptr::null() }, error),
             81 => pc_model_set_joint_restitution(model, a, b, z, b, error),
             82 => pc_model_set_joint_stiction(model, a, b, error),
+            83 => pc_model_add_contact(model, a, b, c"sphere".as_ptr(), c"rolls".as_ptr(), error),
+            84 => {
+                let entry = if yes == 1 { c"radius".as_ptr() } else { z };
+                pc_model_set_contact(model, a, entry, entries, count, error)
+            }
             44 => pc_model_keep(model, if yes == 1 { c"energy".as_ptr() } else { a }, error),
             45 => pc_model_project_start(model, yes, error),
             46 => pc_model_observe_reactions(model, yes, error),

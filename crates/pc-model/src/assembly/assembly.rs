@@ -4,14 +4,14 @@ use std::sync::Arc;
 
 use pc_expr::SymbolPlaces;
 use pc_mech::{Equations, Expr, System};
-use pc_nonholo::NonholoError;
+use pc_nonholo::{NonholoError, Redundant};
 
 use crate::assembly::action::Action;
 use crate::assembly::constraint_treatment::{ConstraintFormulation, ConstraintTreatment};
 use crate::assembly::event::Event;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
-use crate::document::Document;
+use crate::document::{Contact, Document};
 
 /// The system of a model, with the state from which its motion starts.
 pub struct Assembly<'g> {
@@ -51,6 +51,32 @@ impl<'g> Assembly<'g> {
         let frame = self.system.frame();
         let state = self.system.state().into_iter();
         state.zip(self.start.iter().copied()).chain([(frame.time(), self.t_start)]).collect()
+    }
+
+    /// The forces of contacts: the names of the outputs that contain them, with the symbols λ of the reactions.
+    pub(crate) fn forces_of_contacts(&self) -> Vec<(String, Expr<'g>)> {
+        let forces = self.document.contacts.iter().flat_map(Contact::reactions);
+        let graph = self.system.graph();
+        forces.map(|(force, constraint)| (force, graph.symbol(&format!("λ_{constraint}")))).collect()
+    }
+
+    /// The constraints that were dropped, except those on the slip of a body that has no motion in that direction.
+    pub fn dropped_constraints(&self) -> impl Iterator<Item = &Redundant> {
+        let contacts = self.document.contacts.iter();
+        let slips: Vec<String> = contacts
+            .flat_map(|contact| contact.reactions().into_iter().skip(1))
+            .map(|(_, label)| label)
+            .collect();
+        let is_plain = move |dropped: &&Redundant| {
+            !(dropped.follows_from.is_empty() && slips.contains(&dropped.constraint))
+        };
+        self.constraints.redundant().iter().filter(is_plain)
+    }
+
+    /// Whether an event depends on the force of a contact.
+    pub fn has_events_on_reactions(&self) -> bool {
+        let forces = self.forces_of_contacts();
+        self.events.iter().any(|event| forces.iter().any(|&(_, force)| event.when.depends_on(force)))
     }
 
     /// The names of the functions without a value, which stand for any smooth functions.

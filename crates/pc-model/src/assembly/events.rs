@@ -33,7 +33,9 @@ impl<'g> Assembler<'g, '_> {
             let mut resets = Vec::with_capacity(event.reset.len());
             for reset in &event.reset {
                 let place = self.reset_place(reset, constraints, first_state)?;
-                resets.push((place, self.at_event(&reset.expression, x_dot)?));
+                let value = self.at_event(&reset.expression, x_dot)?;
+                self.check_without_reactions(&reset.expression, value)?;
+                resets.push((place, value));
             }
             events.push(Event {
                 name: event.name.text.clone(),
@@ -54,6 +56,20 @@ impl<'g> Assembler<'g, '_> {
     ) -> Result<Expr<'g>, ModelError> {
         let value = self.scope.resolve(expression, Stage::Event)?;
         Ok(self.graph.substitute(&[value], x_dot)[0])
+    }
+
+    /// Checks that a new value does not depend on the forces of contacts, which jump where the state does.
+    fn check_without_reactions(
+        &self,
+        text: &document::Expression,
+        value: Expr<'g>,
+    ) -> Result<(), ModelError> {
+        let contacts = &self.model.document().contacts;
+        let mut forces = contacts.iter().flat_map(document::Contact::reactions);
+        let on = forces.find(|(_, label)| value.depends_on(self.graph.symbol(&format!("λ_{label}"))));
+        let Some((name, _)) = on else { return Ok(()) };
+        let (place, allowed) = ("the reset of an event", "declared names other than forces");
+        Err(self.scope.error(text, text.ast.span, |_| MeaningError::NotHere { name, place, allowed }))
     }
 
     /// The component of (x, η, z) to which a reset gives a new value.

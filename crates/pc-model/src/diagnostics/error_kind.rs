@@ -123,6 +123,28 @@ pub enum ErrorKind {
         /// What could be written instead of the entry, or in addition to it.
         example: &'static str,
     },
+    /// An entry that contacts of this shape do not have.
+    #[error("contacts of this shape have no `{key}`")]
+    OfOtherShapes {
+        /// Its key.
+        key: String,
+        /// What could be written instead of the entry, or in addition to it.
+        example: &'static str,
+    },
+    /// A name that is not that of a body.
+    #[error("no body is called `{name}`")]
+    NoSuchBody {
+        /// The name.
+        name: String,
+        /// The existing bodies.
+        known: Vec<String>,
+    },
+    /// A body without attitude that would roll or slide.
+    #[error("the body `{body}` is a particle, without a shape that could touch anything")]
+    Pointlike {
+        /// The body.
+        body: String,
+    },
     /// A name that is not that of a body with a joint.
     #[error("no body with a joint is called `{name}`")]
     NotInTree {
@@ -304,6 +326,8 @@ pub enum Role {
     Constant,
     /// A component of a point from `[points.NAME]` or `[loops.NAME]`.
     Point,
+    /// A component of a contact from `[contacts.NAME]`.
+    Contact,
     /// An entry of `[constraints]`.
     Constraint,
 }
@@ -322,6 +346,7 @@ impl fmt::Display for Role {
             Self::Output => "an output",
             Self::Constant => "a constant of the action",
             Self::Point => "a component of a point",
+            Self::Contact => "a component of a contact",
             Self::Constraint => "a constraint",
         })
     }
@@ -344,6 +369,7 @@ pub(crate) const SECTIONS: &[&str] = &[
     "bodies",
     "points",
     "loops",
+    "contacts",
     "gravity",
     "forces",
     "integrals",
@@ -393,6 +419,14 @@ impl ErrorKind {
             Self::NoEffect { key, example, .. } => format!("add `{example}`, or leave `{key}` out"),
             Self::Exclusive { help, .. } => (*help).into(),
             Self::OfOtherJoints { key, example } => format!("write `{example}`, or leave `{key}` out"),
+            Self::OfOtherShapes { key, example } => format!("write `{example}`, or leave `{key}` out"),
+            Self::NoSuchBody { known, .. } if known.is_empty() => "declare it in [bodies.NAME]".into(),
+            Self::NoSuchBody { name, known } => {
+                suggest(name, known, &format!("the bodies are {}", listed(known)))
+            }
+            Self::Pointlike { .. } => {
+                "give it `inertia` and `rotation` or `angular_velocity`, or attach it by a `joint`".into()
+            }
             Self::NotInTree { name, known } => {
                 suggest(name, known, &format!("the bodies with joints are {}; \"world\" is what they hang on in the end", listed(known)))
             }

@@ -81,8 +81,16 @@ impl Document {
         let action = self.hamilton_jacobi.iter().flat_map(|action| &action.constants);
         let constants = action.map(|(name, _)| (name, Role::Constant));
         let points = self.points.iter().flat_map(|point| &point.components).map(|name| (name, Role::Point));
-        let mut names: Vec<(&Name, Role)> =
-            quasi.chain(states).chain(functions).chain(inputs).chain(constants).chain(points).collect();
+        let contacts = self.contacts.iter().flat_map(|contact| &contact.components);
+        let contacts = contacts.map(|name| (name, Role::Contact));
+        let mut names: Vec<(&Name, Role)> = quasi
+            .chain(states)
+            .chain(functions)
+            .chain(inputs)
+            .chain(constants)
+            .chain(points)
+            .chain(contacts)
+            .collect();
         for (entries, role) in [
             (&self.parameters, Role::Parameter),
             (&self.definitions, Role::Definition),

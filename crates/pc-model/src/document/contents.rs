@@ -5,6 +5,7 @@ use pc_expr::Direction;
 use pc_mech::{Interpolation, KnownRates};
 
 use crate::diagnostics::source::{Place, Source};
+use crate::document::contacts::Contact;
 use crate::document::draw::Draw;
 use crate::document::expression::{Expression, Located, Name, NamedExpression};
 use crate::document::inertia::Inertia;
@@ -41,7 +42,7 @@ pub struct Document {
     pub kinematics: Vec<NamedExpression>,
     /// `[algebra]`
     pub algebra: Option<Algebra>,
-    /// `[constraints]`, then the constraints that close `[loops.NAME]`.
+    /// `[constraints]`, then the constraints that close `[loops.NAME]`, then those of `[contacts.NAME]`.
     pub constraints: Vec<Constraint>,
     /// `[lagrangian]`, which is always given if there are no bodies.
     pub lagrangian: Option<Lagrangian>,
@@ -51,19 +52,21 @@ pub struct Document {
     pub tree: Vec<TreeBody>,
     /// `[points.NAME]`, then the points at which `[loops.NAME]` are closed.
     pub points: Vec<Point>,
+    /// `[contacts.NAME]`
+    pub contacts: Vec<Contact>,
     /// `[gravity]`
     pub gravity: Option<Gravity>,
     /// `[forces]`, under the names of the quasi-velocities or coordinates on which they act.
     pub forces: Vec<NamedExpression>,
     /// `[integrals]`
     pub integrals: Vec<NamedExpression>,
-    /// `[outputs]`
+    /// `[outputs]`, then the coordinates of joints that follow others, then the forces of contacts.
     pub outputs: Vec<NamedExpression>,
     /// `[[draw]]`
     pub draw: Vec<Draw>,
     /// `[hamilton_jacobi]`
     pub hamilton_jacobi: Option<HamiltonJacobi>,
-    /// `[events.NAME]`
+    /// `[events.NAME]`, then the ends of contacts.
     pub events: Vec<Event>,
     /// `[simulation]`
     pub simulation: Simulation,

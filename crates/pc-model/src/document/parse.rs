@@ -17,7 +17,9 @@ use crate::diagnostics::source::Source;
 use crate::document::contents::Document;
 use crate::document::loops::{self, Loop};
 use crate::document::reader::{Item, Table};
-use crate::document::{bodies, checks, draw, functions, hanging, inputs, sections, simulation, syntax, tree};
+use crate::document::{
+    bodies, checks, contacts, draw, functions, hanging, inputs, sections, simulation, syntax, tree,
+};
 
 impl Document {
     /// The document of a model file.
@@ -37,6 +39,7 @@ impl Document {
         }
         document.source = source;
         hanging::declare(&mut document, loops, &declared)?;
+        contacts::declare(&mut document)?;
         checks::check_names(&document)?;
         checks::require_motion(&document)?;
         checks::require_energy(&document)?;
@@ -84,6 +87,7 @@ impl Document {
             "lagrangian" => self.lagrangian = Some(sections::lagrangian(&table)?),
             "bodies" => (self.bodies, self.tree) = tree::bodies(&table)?,
             "points" => self.points = tree::points(&table)?,
+            "contacts" => self.contacts = contacts::contacts(&table)?,
             "loops" => *loops = loops::loops(&table)?,
             "gravity" => self.gravity = Some(bodies::gravity(&table)?),
             "forces" => self.forces = table.on_velocities()?,

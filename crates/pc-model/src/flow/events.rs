@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pc_expr::{Backend, Evaluator, Event, Events, Failure, Program};
+use pc_expr::{Backend, Evaluator, Event, Events, Failure, Inputs, Program};
 use pc_mech::{MechError, Motion, Signals};
 
 use crate::assembly::assembly::Assembly;
@@ -22,6 +22,8 @@ pub struct FlowEvents {
     /// Inputs with tables.
     signals: Signals,
     functions: Evaluator,
+    /// The reactions on which the functions depend.
+    reactions: Option<Reactions>,
     resets: Vec<Reset>,
     /// The derivatives of functions and resets, if states are read and written by formulas.
     slopes: Option<EventSlopes>,
@@ -42,6 +44,23 @@ struct Reset {
     values: Evaluator,
 }
 
+/// Reactions of contacts, read from the observables of the motion.
+#[derive(Clone, Debug)]
+struct Reactions {
+    motion: Motion,
+    /// The index of each among the observables; `None` for the reaction of a constraint that was dropped.
+    places: Vec<Option<usize>>,
+    observed: Vec<f64>,
+}
+
+impl Reactions {
+    /// Appends the reactions at a state of the motion to `room`.
+    fn append(&mut self, t: f64, y: &[f64], room: &mut Vec<f64>) {
+        self.motion.observe_to(t, y, &mut self.observed);
+        room.extend(self.places.iter().map(|place| place.map_or(0.0, |place| self.observed[place])));
+    }
+}
+
 #[derive(Debug, thiserror::Error)]
 #[error("these events were not compiled with their derivatives")]
 struct NoSlopes;
@@ -55,7 +74,7 @@ struct OfTable {
 
 impl FlowEvents {
     /// The events of a model whose states are converted by `reading`; `watch` is the motion in all
-    /// quasi-velocities if there are multipliers.
+    /// quasi-velocities if there are multipliers, and `motion` that of the form.
     ///
     /// # Errors
     /// [`ModelError`] if the events cannot be compiled.
@@ -63,18 +82,29 @@ impl FlowEvents {
         model: &Model,
         assembly: &Assembly<'_>,
         reading: &Reading,
-        watch: &Motion,
+        (watch, motion): (&Motion, &Motion),
         slopes: Option<EventSlopes>,
     ) -> Result<FlowEvents, ModelError> {
         let system = &assembly.system;
-        let inputs = inputs(system, &system.state());
-        let compiled = |values: &[_]| {
-            let program = Program::new(system.graph(), &inputs, values);
+        let of_state = inputs(system, &system.state());
+        let compiled_in = |inputs: &Inputs<'_>, values: &[_]| {
+            let program = Program::new(system.graph(), inputs, values);
             let program = assembly.placed(program.map_err(MechError::from))?;
             Ok(Evaluator::new(program, Backend::Interpreter))
         };
+        let compiled = |values: &[_]| compiled_in(&of_state, values);
         let declared = &assembly.events;
         let functions: Vec<_> = declared.iter().map(|event| event.when).collect();
+        let forces = assembly.forces_of_contacts();
+        let places = forces.iter().map(|(name, _)| motion.observable_names().iter().position(|n| n == name));
+        let reactions = assembly.has_events_on_reactions().then(|| Reactions {
+            motion: motion.clone().without_kept(),
+            places: places.collect(),
+            observed: vec![f64::NAN; motion.observable_names().len()],
+        });
+        let symbols: Vec<_> =
+            forces.iter().map(|&(_, symbol)| symbol).filter(|_| reactions.is_some()).collect();
+        let with_reactions = inputs(system, &[system.state(), symbols].concat());
         let resets = declared.iter().map(|event| {
             let (places, values): (Vec<_>, Vec<_>) = event.resets.iter().copied().unzip();
             Ok(Reset { places, values: compiled(&values)? })
@@ -89,7 +119,8 @@ impl FlowEvents {
             events: declared.iter().map(event).collect(),
             reading: reading.clone(),
             signals: model.signals(),
-            functions: compiled(&functions)?,
+            functions: compiled_in(&with_reactions, &functions)?,
+            reactions,
             resets: resets.collect::<Result<_, ModelError>>()?,
             slopes,
             tables: model.parameter_values().tables().iter().map(|&(place, _)| place).collect(),
@@ -110,6 +141,9 @@ impl FlowEvents {
         }
         if let Some(impacts) = &mut self.impacts {
             impacts.set_parameters(parameters);
+        }
+        if let Some(reactions) = &mut self.reactions {
+            reactions.motion.parameters_mut()[..parameters.len()].copy_from_slice(parameters);
         }
     }
 
@@ -166,13 +200,17 @@ impl Events for FlowEvents {
     fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
         self.reading.read_in(t, y, &mut self.room).map_err(Failure::recoverable)?;
         self.signals.show(t, self.reading.parameters_mut()).map_err(Failure::fatal)?;
+        if let Some(reactions) = &mut self.reactions {
+            reactions.append(t, y, &mut self.room);
+        }
         self.functions.eval(t, &self.room, self.reading.parameters(), values);
         Ok(())
     }
 
-    /// The program of the functions, if states are read without conversion and there are no tables.
+    /// The program of the functions, if states are read without conversion, and there are no tables and no reactions.
     fn program(&self) -> Option<(&Arc<Program>, &[f64])> {
-        let plain = self.reading.is_plain() && self.signals.is_empty() && !self.events.is_empty();
+        let plain = self.reading.is_plain() && self.signals.is_empty() && self.reactions.is_none();
+        let plain = plain && !self.events.is_empty();
         plain.then(|| (self.functions.program(), self.reading.parameters()))
     }
 

@@ -113,8 +113,9 @@ impl Flow {
         let all = assembly.quasi_velocities_of(free)?;
         let reading = Reading::new(assembly, form, &all, transform, model.signals())?;
         let explicit = reading.transform.is_none() && form.matrix.is_none() && !assembly.has_multipliers();
-        let is_explicit = explicit && assembly.events.iter().all(|event| event.impact.is_none());
-        let slopes = (is_explicit && model.differentiates_by_parameters())
+        let is_plain = assembly.events.iter().all(|event| event.impact.is_none());
+        let explicit = explicit && is_plain && !assembly.has_events_on_reactions();
+        let slopes = (explicit && model.differentiates_by_parameters())
             .then(|| EventSlopes::new(model, assembly, free, &all))
             .transpose()?;
         // Eliminated multipliers still determine where a reset may lead.
@@ -128,7 +129,7 @@ impl Flow {
         };
         let watch = watch.as_ref().unwrap_or_else(|| motion.in_quasi_velocities());
         Ok(Flow {
-            events: FlowEvents::new(model, assembly, &reading, watch, slopes)?,
+            events: FlowEvents::new(model, assembly, &reading, (watch, &motion), slopes)?,
             names: x
                 .iter()
                 .chain(declared)

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
 
-use pc_mech::{Expr, Joint, Matrix, Tree, TreeBody};
+use pc_mech::{Expr, Joint, Matrix, TreeBody};
 
 use crate::diagnostics::error::ModelError;
 use crate::document::tree::ROUNDING;
@@ -30,11 +30,7 @@ impl<'g> Scope<'g, '_> {
 
     fn all_points(&mut self) -> Result<HashMap<String, Expr<'g>>, ModelError> {
         let document = self.document;
-        let mut bodies = Vec::with_capacity(document.tree.len());
-        for body in &document.tree {
-            bodies.push(hung(body, self.joint(&body.joint)?));
-        }
-        let tree = Tree::new(self.graph, bodies).map_err(|error| document.derivation_error(error))?;
+        let tree = self.kinematic_tree()?;
         let motions = tree.motions();
         let mut points = HashMap::new();
         for point in &document.points {

@@ -5,7 +5,7 @@ use pc_expr::parse::{Ast, Span};
 
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
-use crate::document::Expression;
+use crate::document::{Contact, Expression};
 use crate::names::scope::Scope;
 use crate::names::stage::Stage;
 
@@ -31,8 +31,9 @@ impl<'g> Scope<'g, '_> {
             };
         }
         let coordinates = &self.document.coordinates;
+        let of_contact = self.contact_of(name).filter(|&(_, component)| component <= Contact::GAP);
         let is_point = self.is_point(name);
-        if !is_point && !coordinates.iter().any(|c| c.name.text == name) {
+        if of_contact.is_none() && !is_point && !coordinates.iter().any(|c| c.name.text == name) {
             let fault = |_| MeaningError::NotACoordinate {
                 name: name.to_owned(),
                 coordinates: coordinates.iter().map(|c| c.name.text.clone()).collect(),
@@ -53,6 +54,10 @@ impl<'g> Scope<'g, '_> {
                 place: stage.place(),
                 allowed: stage.allowed(),
             })),
+            _ if of_contact.is_some() => {
+                let value = self.name(expression, span, name, stage)?;
+                Ok(self.graph.directional(&[value], &self.rates())[0])
+            }
             _ if is_point => {
                 let place = self.point(name)?;
                 let rates: Vec<_> = self.coordinates().into_iter().zip(self.velocities()).collect();

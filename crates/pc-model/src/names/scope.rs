@@ -12,6 +12,7 @@ use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::source::{Place, Source};
 use crate::document::{Body, Document, Expression, InputValue, NamedExpression, TreeBody};
+use crate::names::contacts::Contacts;
 use crate::names::functions::call;
 use crate::names::momenta::Moving;
 use crate::names::stage::Stage;
@@ -66,6 +67,8 @@ pub(crate) struct Scope<'g, 'd> {
     pub(crate) written: Vec<Written<'g>>,
     /// The arguments of the function whose value is being resolved.
     pub(super) arguments: Vec<(&'d str, Expr<'g>)>,
+    /// The contacts used so far.
+    pub(super) contacts: Contacts<'g>,
     /// The components of points, which are all computed when one of them is used.
     pub(super) points: Option<HashMap<String, Expr<'g>>>,
     /// The motions of all bodies, which are computed when one of them is used.
@@ -112,6 +115,7 @@ impl<'g, 'd> Scope<'g, 'd> {
             context: Context::default(),
             written: Vec::new(),
             arguments: Vec::new(),
+            contacts: Contacts::default(),
             points: None,
             moving: None,
             force_functions: Vec::new(),
@@ -292,7 +296,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         Ok(product)
     }
 
-    fn name(
+    pub(super) fn name(
         &mut self,
         expression: &Expression,
         span: Span,
@@ -334,6 +338,10 @@ impl<'g, 'd> Scope<'g, 'd> {
         let is_state = document.states.iter().any(|state| state.name.text == name);
         let is_input = document.inputs.iter().any(|input| input.name.text == name);
         let is_point = self.is_point(name);
+        if let Some((number, component)) = self.contact_of(name) {
+            let known = if stage.has_velocities() { self.contact(number, component)? } else { None };
+            return known.map_or_else(|| refuse(self), Ok);
+        }
         match stage {
             _ if is_input => match stage {
                 Stage::Parameter | Stage::Body | Stage::Start | Stage::Joint | Stage::Action => refuse(self),
@@ -369,6 +377,9 @@ impl<'g, 'd> Scope<'g, 'd> {
             _ if is_point => self.point(name),
             _ if is_coordinate || is_quasi_velocity || is_state => Ok(self.graph.symbol(name)),
             Stage::Action if self.is_constant(name) => Ok(self.graph.symbol(name)),
+            Stage::Observation | Stage::Event if self.reaction_of_contact(name).is_some() => {
+                Ok(self.reaction_of_contact(name).unwrap_or(Expr::ZERO))
+            }
             Stage::Observation if self.is_reaction(name) => Ok(self.graph.symbol(name)),
             Stage::Observation if self.is_resultant(name) => {
                 let symbol = self.graph.symbol(name);

@@ -41,6 +41,29 @@ pub(crate) enum Stage {
 }
 
 impl Stage {
+    /// Whether all velocities are known here, those of the text and the x'.
+    pub(super) fn has_velocities(self) -> bool {
+        match self {
+            Stage::Parameter
+            | Stage::Body
+            | Stage::Start
+            | Stage::Definition
+            | Stage::Kinematics
+            | Stage::Joint
+            | Stage::Position
+            | Stage::Inertia
+            | Stage::Gravity
+            | Stage::Action => false,
+            Stage::Rate
+            | Stage::Constraint
+            | Stage::Dynamics
+            | Stage::Event
+            | Stage::Function
+            | Stage::Drawing
+            | Stage::Observation => true,
+        }
+    }
+
     pub(super) fn place(self) -> &'static str {
         match self {
             Stage::Parameter => "the value of a parameter",

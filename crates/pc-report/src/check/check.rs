@@ -108,7 +108,7 @@ impl<'g> Check<'g> {
             frame: FrameFacts::of(system, &near),
             constraints: constraints(assembly),
             classified: assembly.constraints.classified().to_vec(),
-            redundant: assembly.constraints.redundant().to_vec(),
+            redundant: assembly.dropped_constraints().cloned().collect(),
             integrable_combinations: assembly.constraints.integrable_combinations(),
             combinations: assembly.placed(assembly.constraints.combinations_found(&assembly.at_start()))?,
             start_residual: start_residual(assembly, &near),

@@ -179,6 +179,10 @@ pub(crate) struct Names {
     pub(crate) points: Vec<(String, Term)>,
     /// The acceleration of gravity.
     pub(crate) gravity: Vec<Term>,
+    /// The names of components of contacts, with the terms they denote.
+    pub(crate) contacts: Vec<(String, Term)>,
+    /// The names of the forces of contacts, with the names of their constraints.
+    pub(crate) forces: Vec<(String, String)>,
 }
 
 impl Names {
@@ -249,11 +253,16 @@ impl Names {
     }
 
     fn point(&self, name: &str) -> Option<Term> {
-        self.points.iter().find(|(known, _)| known == name).map(|(_, component)| component.clone())
+        let mut components = self.points.iter().chain(&self.contacts);
+        components.find(|(known, _)| known == name).map(|(_, component)| component.clone())
     }
 
     fn name(&self, name: &str) -> Result<Term, Unable> {
         let reaction = || place(&self.constraints, name.strip_prefix("λ_")?).map(Term::Reaction);
+        let force = || {
+            let (_, constraint) = self.forces.iter().find(|(force, _)| force == name)?;
+            place(&self.constraints, constraint).map(Term::Reaction)
+        };
         match name {
             "t" => Ok(Term::Time),
             "pi" => Ok(Term::Number(std::f64::consts::PI)),
@@ -266,6 +275,7 @@ impl Names {
                 .or_else(|| place(&self.definitions, name).map(Term::Definition))
                 .or_else(|| self.point(name))
                 .or_else(reaction)
+                .or_else(force)
                 .or_else(|| Resultant::named(name, &self.constraints, &self.bodies).map(Term::Resultant))
                 .or_else(|| momentum::named(name, &self.bodies, &self.gravity))
                 .ok_or_else(|| unknown(name)),

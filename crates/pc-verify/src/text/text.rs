@@ -5,10 +5,11 @@ use std::sync::Arc;
 use pc_expr::Deadline;
 use pc_mech::Table;
 use pc_model::Model;
-use pc_model::document::{AlgebraDefinition, Document, Expression, NamedExpression, Orientation};
+use pc_model::document::{AlgebraDefinition, Contact, Document, Expression, NamedExpression, Orientation};
 
 use crate::error::Unable;
 use crate::text::body::{Body, Turning, matrix};
+use crate::text::contacts;
 use crate::text::term::{Declared, Names, Term};
 use crate::text::tree::{Stop, Tree};
 
@@ -94,10 +95,12 @@ impl Text {
             bodies: labels.map(|name| name.text.clone()).collect(),
             functions: document.functions.iter().map(Declared::of).collect(),
             points: tree.points(),
+            forces: document.contacts.iter().flat_map(Contact::reactions).collect(),
             ..Names::default()
         };
         let gravity = document.gravity.iter().flat_map(|gravity| &gravity.acceleration);
         names.gravity = gravity.map(|part| names.resolve(&part.ast)).collect::<Result<_, _>>()?;
+        names.contacts = contacts::components(document, &tree, &names)?;
         let term = |expression: &Expression| names.resolve(&expression.ast);
         let terms = |list: &[Expression]| list.iter().map(term).collect::<Result<Vec<Term>, Unable>>();
         let energy = document.lagrangian.as_ref();

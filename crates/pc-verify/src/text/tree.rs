@@ -1,18 +1,20 @@
 //! Bodies on joints, as terms: their positions, their rotations, and the rates of the joints' coordinates.
 //!
 //! A body has thirty definitions: the constant rotation of its joint, the rotation by the joint, its own
-//! rotation, and its position; a point has three. These definitions follow the constant definitions of the
+//! rotation, and its position; a point has three, and so has the place where a body touches a plane. These definitions follow the constant definitions of the
 //! text, which joints may contain, and precede the others, which may contain points.
 
 use std::collections::HashSet;
 
 use pc_expr::parse::{Ast, AstKind};
 use pc_model::document::{
-    Document, Drive, Expression, Following, Joint, JointKind, JointRotation, NamedExpression, Point, TreeBody,
+    Contact, Document, Drive, Expression, Following, Joint, JointKind, JointRotation, NamedExpression, Point,
+    TreeBody,
 };
 
 use crate::error::Unable;
 use crate::text::body::{Body, Turning, matrix};
+use crate::text::contacts::Touching;
 use crate::text::term::{Function, Names, Term};
 
 /// The terms of the rotors, springs and dampers of joints.
@@ -42,6 +44,9 @@ pub(crate) struct Stop {
 const OF_BODY: usize = 9 + 9 + 9 + 3;
 /// The number of definitions of a point.
 const OF_POINT: usize = 3;
+
+/// The number of definitions of a contact of a body on a joint: its point of contact.
+const OF_CONTACT: usize = 3;
 
 /// The bodies on joints of a document, with the order of the definitions.
 pub(crate) struct Tree<'a> {
@@ -90,6 +95,9 @@ impl<'a> Tree<'a> {
         let points = points.flat_map(|name| std::iter::repeat_n(name, OF_POINT));
         let own = bodies.map(|name| format!("the body {name}"));
         let own = own.chain(points.map(|name| format!("the point {name}")));
+        let contacts = self.contacts().map(|(_, contact)| &contact.name.text);
+        let contacts = contacts.flat_map(|name| std::iter::repeat_n(name, OF_CONTACT));
+        let own = own.chain(contacts.map(|name| format!("the contact {name}")));
         let (constant, moving) = self.written.split_at(self.constant);
         let named = |list: &[&NamedExpression]| list.iter().map(|d| d.name.text.clone()).collect::<Vec<_>>();
         named(constant).into_iter().chain(own).chain(named(moving)).collect()
@@ -107,6 +115,26 @@ impl<'a> Tree<'a> {
         let first = self.first(body) + 18;
         let all: Vec<Term> = (first..first + 12).map(Term::Definition).collect();
         (all[..9].to_vec(), all[9..].to_vec())
+    }
+
+    /// The rotation of a body on a joint, row by row, and its position.
+    pub(crate) fn placed(&self, body: &str) -> Option<(Vec<Term>, Vec<Term>)> {
+        place_of(self.document, Some(body)).map(|body| self.placement(Some(body)))
+    }
+
+    /// The contacts of bodies on joints, with their numbers.
+    fn contacts(&self) -> impl Iterator<Item = (usize, &'a Contact)> {
+        let on_joint =
+            |(_, contact): &(usize, &Contact)| place_of(self.document, Some(&contact.body.value)).is_some();
+        self.document.contacts.iter().enumerate().filter(on_joint)
+    }
+
+    /// The point of contact of a body on a joint, for the contact with this number.
+    pub(crate) fn point_of_contact(&self, number: usize) -> Vec<Term> {
+        let before = OF_BODY * self.document.tree.len() + OF_POINT * self.document.points.len();
+        let place = self.contacts().position(|(own, _)| own == number).unwrap_or(0); // is among them
+        let first = self.constant + before + OF_CONTACT * place;
+        (first..first + OF_CONTACT).map(Term::Definition).collect()
     }
 
     /// The names of the components of points, with their terms.
@@ -150,6 +178,10 @@ impl<'a> Tree<'a> {
         for point in &self.document.points {
             let (rotation, origin) = self.placement(place_of(self.document, point.body()));
             all.extend(added(&origin, &turned(&rotation, &vector(point.at.as_ref(), names)?)));
+        }
+        for (_, contact) in self.contacts() {
+            let touching = Touching::on_joint(contact, self, names);
+            all.extend(touching.map_or(Ok(Vec::new()), |touching| touching.point())?);
         }
         all.extend(written(&self.written[self.constant..])?);
         Ok(all)

@@ -29,6 +29,7 @@ _SECTIONS = (
     "bodies",
     "points",
     "loops",
+    "contacts",
     "gravity",
     "forces",
     "integrals",
@@ -225,6 +226,16 @@ class Builder(Generic[M]):
         """A joint between two bodies that are already attached: a ``"point"``, a ``"revolute"`` joint or a ``"rod"``."""
         entries = {"kind": kind, "bodies": listed("bodies", bodies), "at": at, "axis": axis, "length": length}
         return self._table("loops", name, entries)
+
+    def contact(self, name: str, body: str, shape: str, motion: str, **entries: Any) -> Builder[M]:
+        """A contact of a body with a plane: a ``"disc"``, a ``"sphere"`` or an ``"ellipsoid"`` that ``"rolls"`` or ``"slides"``.
+
+        Parameters
+        ----------
+        **entries
+            ``radius``, ``axis``, ``semi_axes``, ``at``, ``normal``, … as in ``[contacts.NAME]`` of a text.
+        """
+        return self._table("contacts", name, {"body": body, "shape": shape, "motion": motion, **entries})
 
     def draw(self, kind: str, **entries: Any) -> Builder[M]:
         """A shape that follows the motion in animations: ``"line"``, ``"disc"``, ``"spring"``, … as in ``[[draw]]`` of a text."""

@@ -50,11 +50,11 @@ def formula(value: Any) -> str:
 
 
 #: Entries whose texts are names rather than expressions.
-_NAMES = frozenset(("kind", "body", "bodies", "parent", "coordinates", "quasi_velocities", "text"))
+_NAMES = frozenset(("kind", "body", "bodies", "parent", "coordinates", "quasi_velocities", "shape", "motion", "text"))
 
 
 def entry(key: str, value: Any) -> str:
-    """An entry of a body, a joint, a point, a loop or a drawing: names, expressions, and lists and tables of them."""
+    """An entry of a body, a joint, a point, a loop, a contact or a drawing: names, expressions, and lists and tables of them."""
     if isinstance(value, Joint):
         value = value.entries()
     if isinstance(value, Mapping):
@@ -63,6 +63,8 @@ def entry(key: str, value: Any) -> str:
         return "[" + ", ".join(f"[{quoted(axis)}, {formula(angle)}]" for axis, angle in value) + "]"
     if isinstance(value, (list, tuple)) or getattr(value, "ndim", 0) > 0:
         return "[" + ", ".join(entry(key, one) for one in value) + "]"
+    if isinstance(value, bool):
+        return "true" if value else "false"
     if isinstance(value, numbers.Rational) and not isinstance(value, bool):
         return number(float(value)) if value == float(value) else formula(value)
     return quoted(str(value)) if key in _NAMES else formula(value)

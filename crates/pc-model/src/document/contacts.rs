@@ -1,0 +1,250 @@
+//! Contacts of bodies with a fixed plane: a disc, a sphere or an ellipsoid that rolls or slides on it.
+
+use pc_expr::Direction;
+use pc_expr::parse::AstKind;
+
+use super::reader::{Item, Table};
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::error_kind::{ErrorKind, Role};
+use crate::document::contents::{Constraint, Document, Event, Orientation};
+use crate::document::expression::{Expression, Located, Name, NamedExpression};
+use crate::document::tree::direction;
+
+const KEYS: &[&str] = &[
+    "body",
+    "shape",
+    "radius",
+    "axis",
+    "semi_axes",
+    "at",
+    "attitude",
+    "motion",
+    "normal",
+    "through",
+    "keeps",
+];
+const RADIUS: &str = "radius = \"r\"";
+const SEMI_AXES: &str = "semi_axes = [\"a\", \"b\", \"c\"]";
+const AXIS: &str = "axis = [0, 0, 1]";
+const AT: &str = "at = [0, 0, 0]";
+const NORMAL: &str = "normal = [0, 0, 1]";
+const ATTITUDE: &str = "attitude = [1, 0, 0, 0, 1, 0, 0, 0, 1]";
+
+/// A contact of a body with a fixed plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contact {
+    /// Its name.
+    pub name: Name,
+    /// The body that touches the plane.
+    pub body: Located<String>,
+    /// The part of the surface of the body that may touch the plane.
+    pub shape: ContactShape,
+    /// The centre of the shape, in body axes, relative to the origin of a body with a joint or to the `position` of
+    /// another body; that point if left out.
+    pub at: Option<[Expression; 3]>,
+    /// The rotation from the axes of the angular velocity of a body to the fixed axes, row by row.
+    pub attitude: Option<Located<Box<[Expression; 9]>>>,
+    /// Whether the body rolls; otherwise it slides.
+    pub rolls: bool,
+    /// The direction out of the plane towards the body, a vector of any length but 0; upwards if left out.
+    pub normal: Option<[Expression; 3]>,
+    /// A point of the plane; the origin of the fixed axes if left out.
+    pub through: Option<[Expression; 3]>,
+    /// Whether the contact also pulls, so that it never ends.
+    pub keeps: bool,
+    /// `NAME_x` to `NAME_z`, the point of contact along fixed axes; `NAME_gap`, the distance from the plane; and
+    /// `NAME_slip_1`, `NAME_slip_2`, the velocity along the plane of the material point of the body there.
+    pub components: Vec<Name>,
+}
+
+/// A convex shape that touches a plane in one point.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ContactShape {
+    /// The edge of a disc.
+    Disc {
+        /// Its radius.
+        radius: Expression,
+        /// The direction of its axle in body axes, a vector of any length but 0.
+        axis: [f64; 3],
+    },
+    /// A sphere.
+    Sphere {
+        /// Its radius.
+        radius: Expression,
+    },
+    /// An ellipsoid, whose axes are those of the body.
+    Ellipsoid {
+        /// The halves of its axes.
+        semi_axes: Box<[Expression; 3]>,
+    },
+}
+
+impl Contact {
+    const ENDS: [&'static str; 6] = ["x", "y", "z", "gap", "slip_1", "slip_2"];
+    /// The index of the gap among the components; the velocities of slip follow it.
+    pub const GAP: usize = 3;
+
+    /// The index of the component with this name.
+    pub fn component(&self, name: &str) -> Option<usize> {
+        self.components.iter().position(|component| component.text == name)
+    }
+
+    /// The names of its reactions, each with the name of its constraint: the normal force, then for a body that rolls
+    /// the forces of friction along the two tangents.
+    pub fn reactions(&self) -> Vec<(String, String)> {
+        let name = &self.name.text;
+        let mut reactions = vec![(format!("N_{name}"), name.clone())];
+        if self.rolls {
+            reactions.extend([1, 2].map(|i| (format!("T_{name}_{i}"), format!("{name}_{i}"))));
+        }
+        reactions
+    }
+
+    /// The fixed axis along whose projection onto the plane the first tangent points: the first, unless the normal is
+    /// written as parallel to it.
+    pub fn first_tangent(&self) -> usize {
+        let is_zero = |part: &Expression| matches!(part.ast.kind, AstKind::Number(0.0));
+        let along_first = self.normal.as_ref().is_some_and(|[_, y, z]| is_zero(y) && is_zero(z));
+        usize::from(along_first)
+    }
+}
+
+/// The shapes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Disc,
+    Sphere,
+    Ellipsoid,
+}
+
+/// `[contacts.NAME]`
+pub(super) fn contacts(table: &Table<'_>) -> Result<Vec<Contact>, ModelError> {
+    table.items().map(|item| contact(&item)).collect()
+}
+
+fn contact(item: &Item<'_>) -> Result<Contact, ModelError> {
+    let name = item.new_name()?;
+    let table = item.section(&format!("contacts.{}", name.text), "[contacts.NAME]")?;
+    let (mut body, mut kind, mut motion) = (None, None, None);
+    let (mut radius, mut axis, mut semi_axes) = (None, None, None);
+    let (mut at, mut attitude, mut normal, mut through, mut keeps) = (None, None, None, None, None);
+    for part in table.items() {
+        match part.key() {
+            "body" => body = Some(part.text()?),
+            "shape" => {
+                let kinds = [("disc", Kind::Disc), ("sphere", Kind::Sphere), ("ellipsoid", Kind::Ellipsoid)];
+                kind = Some(part.choice(&kinds)?.value);
+            }
+            "radius" => radius = Some((part.clone(), part.expression()?)),
+            "axis" => axis = Some((part.clone(), direction(&part, AXIS)?)),
+            "semi_axes" => semi_axes = Some((part.clone(), part.array("3 expressions", SEMI_AXES)?)),
+            "at" => at = Some(part.array("3 expressions", AT)?),
+            "attitude" => attitude = Some(part.located(Box::new(part.array("9 expressions", ATTITUDE)?))),
+            "motion" => motion = Some(part.choice(&[("rolls", true), ("slides", false)])?.value),
+            "normal" => normal = Some(part.array("3 expressions", NORMAL)?),
+            "through" => through = Some(part.array("3 expressions", "through = [0, 0, 0]")?),
+            "keeps" => keeps = Some(part.boolean()?.value),
+            _ => return Err(part.unknown(KEYS)),
+        }
+    }
+    let missing = |key, example| table.error(ErrorKind::Missing { key, example });
+    let kind = kind.ok_or_else(|| missing("shape", "shape = \"sphere\""))?;
+    let stray = |part: Option<&Item<'_>>, example| match part {
+        Some(part) => Err(part.key_error(ErrorKind::OfOtherShapes { key: part.key().to_owned(), example })),
+        None => Ok(()),
+    };
+    if kind == Kind::Ellipsoid {
+        stray(radius.as_ref().map(|(part, _)| part), SEMI_AXES)?;
+    } else {
+        stray(semi_axes.as_ref().map(|(part, _)| part), RADIUS)?;
+    }
+    if kind != Kind::Disc {
+        stray(axis.as_ref().map(|(part, _)| part), "shape = \"disc\"")?;
+    }
+    let radius = radius.map(|(_, radius)| radius).ok_or_else(|| missing("radius", RADIUS));
+    let shape = match kind {
+        Kind::Disc => {
+            let (_, axis) = axis.ok_or_else(|| missing("axis", AXIS))?;
+            ContactShape::Disc { radius: radius?, axis }
+        }
+        Kind::Sphere => ContactShape::Sphere { radius: radius? },
+        Kind::Ellipsoid => {
+            let (_, semi_axes) = semi_axes.ok_or_else(|| missing("semi_axes", SEMI_AXES))?;
+            ContactShape::Ellipsoid { semi_axes: Box::new(semi_axes) }
+        }
+    };
+    let component = |end| item.derived_name(format!("{}_{end}", name.text));
+    Ok(Contact {
+        body: body.ok_or_else(|| missing("body", "body = \"…\""))?,
+        rolls: motion.ok_or_else(|| missing("motion", "motion = \"rolls\""))?,
+        components: Contact::ENDS.into_iter().map(component).collect::<Result<_, _>>()?,
+        keeps: keeps.unwrap_or(false),
+        name,
+        shape,
+        at,
+        attitude,
+        normal,
+        through,
+    })
+}
+
+/// Adds the constraints, the outputs and the events of contacts to the document.
+pub(super) fn declare(document: &mut Document) -> Result<(), ModelError> {
+    for contact in &document.contacts {
+        check_body(document, contact)?;
+    }
+    for contact in document.contacts.clone() {
+        let place = &contact.name.place;
+        let following =
+            |document: &Document, text: String| Expression::following(&document.source, text, place);
+        let ends = Contact::GAP..Contact::GAP + if contact.rolls { 3 } else { 1 };
+        for (component, (force, label)) in ends.zip(contact.reactions()) {
+            if let Some(taken) = document.constraints.iter().find(|known| known.name.text == label) {
+                let line = document.source.position(taken.name.place.span.start).line;
+                let kind = ErrorKind::NameTaken { name: label, first: Role::Constraint, line };
+                return Err(document.source.error(place, kind));
+            }
+            let expression = following(document, contact.components[component].text.clone())?;
+            let reaction = following(document, format!("λ_{label}"))?;
+            let named = |text: String| Name { text, place: place.clone() };
+            document.outputs.push(NamedExpression { name: named(force), expression: reaction });
+            document.constraints.push(Constraint { name: named(label), expression, kind: None });
+        }
+        if !contact.keeps {
+            document.events.push(Event {
+                name: Name { text: format!("{}_lift_off", contact.name.text), place: place.clone() },
+                place: place.clone(),
+                when: following(document, format!("N_{}", contact.name.text))?,
+                direction: Some(Located { value: Direction::Falling, place: place.clone() }),
+                terminal: Some(Located { value: true, place: place.clone() }),
+                reset: Vec::new(),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Checks that the body of a contact exists, and that its attitude is known.
+fn check_body(document: &Document, contact: &Contact) -> Result<(), ModelError> {
+    let Contact { body, attitude, .. } = contact;
+    let refuse = |place, kind: ErrorKind| Err(document.source.error(place, kind));
+    let placed = document.bodies.iter().find(|known| known.name.text == body.value);
+    match (placed.map(|placed| &placed.orientation), attitude) {
+        (Some(Some(Orientation::AngularVelocity(_))), Some(_)) => Ok(()),
+        (Some(Some(Orientation::AngularVelocity(_))), None) => {
+            refuse(&contact.name.place, ErrorKind::Missing { key: "attitude", example: ATTITUDE })
+        }
+        (_, Some(attitude)) => {
+            let (key, example) = ("attitude".to_owned(), "angular_velocity = [\"w1\", \"w2\", \"w3\"]");
+            refuse(&attitude.place, ErrorKind::NoEffect { key, without: "angular_velocity", example })
+        }
+        (Some(Some(Orientation::Rotation(_))), None) => Ok(()),
+        (Some(None), None) => refuse(&body.place, ErrorKind::Pointlike { body: body.value.clone() }),
+        (None, None) if document.tree.iter().any(|known| known.name.text == body.value) => Ok(()),
+        (None, None) => {
+            let placed = document.bodies.iter().map(|body| body.name.text.clone());
+            let known = placed.chain(document.tree.iter().map(|body| body.name.text.clone())).collect();
+            refuse(&body.place, ErrorKind::NoSuchBody { name: body.value.clone(), known })
+        }
+    }
+}

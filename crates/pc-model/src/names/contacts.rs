@@ -1,0 +1,232 @@
+//! Contacts of bodies with planes, as functions of coordinates and velocities.
+//!
+//! With the outward unit normal n of the plane, which leads through p_0, a convex body of centre c touches the plane at
+//!
+//!   p = c − ρ(n),    g = n·(c − p_0) − h(n) = 0,    ρ = ∂h/∂n,
+//!
+//! where h is the support function of the body: r for a sphere, r |n − (n·e) e| for a disc with the axle e, and
+//! √(a²n_1² + b²n_2² + c²n_3²) for an ellipsoid along its own axes. The material point of the body at p has the velocity
+//! u = v + ω × (p − c), of which n·u is the rate of g.
+
+use std::collections::HashMap;
+
+use pc_mech::{Expr, Matrix, Tree};
+
+use crate::diagnostics::error::ModelError;
+use crate::diagnostics::meaning::MeaningError;
+use crate::document::{Contact, ContactShape, Expression, Orientation};
+use crate::names::points::hung;
+use crate::names::scope::Scope;
+use crate::names::stage::Stage;
+
+type Vector<'g> = [Expr<'g>; 3];
+
+/// The motion of a body: the position of its reference point and the rotation from its axes to the fixed ones; the
+/// velocity of that point along fixed axes, and the angular velocity along its own.
+struct Moving<'g> {
+    place: Vector<'g>,
+    rotation: Matrix<Expr<'g>>,
+    velocity: Vector<'g>,
+    turning: Vector<'g>,
+}
+
+impl<'g> Scope<'g, '_> {
+    /// The contact that has a component with this name, and the index of the component.
+    pub(super) fn contact_of(&self, name: &str) -> Option<(usize, usize)> {
+        let contacts = self.document.contacts.iter().enumerate();
+        contacts.filter_map(|(number, contact)| Some((number, contact.component(name)?))).next()
+    }
+
+    /// The reaction that is also called `name`, if this is a force of a contact.
+    pub(super) fn reaction_of_contact(&self, name: &str) -> Option<Expr<'g>> {
+        let mut reactions = self.document.contacts.iter().flat_map(Contact::reactions);
+        let (_, constraint) = reactions.find(|(force, _)| force == name)?;
+        Some(self.graph.symbol(&format!("λ_{constraint}")))
+    }
+
+    /// A component of a contact; `None` if the motion of the body depends on the contact itself.
+    pub(super) fn contact(
+        &mut self,
+        number: usize,
+        component: usize,
+    ) -> Result<Option<Expr<'g>>, ModelError> {
+        if let Some(known) = self.contacts.get(&number) {
+            return Ok(known.map(|values| values[component]));
+        }
+        self.contacts.insert(number, None);
+        let values = self.touching(number)?;
+        self.contacts.insert(number, Some(values));
+        Ok(Some(values[component]))
+    }
+
+    /// The point of contact, the gap, and the velocities of slip.
+    fn touching(&mut self, number: usize) -> Result<[Expr<'g>; 6], ModelError> {
+        let graph = self.graph;
+        let dot = |a: &Vector<'g>, b: &Vector<'g>| graph.dot(a.iter().copied(), b.iter().copied());
+        let contact = &self.document.contacts[number];
+        let body = self.moving(contact)?;
+        let at = self.vector(contact.at.as_ref())?;
+        let through = self.vector(contact.through.as_ref())?;
+        let normal = match &contact.normal {
+            None => [Expr::ZERO, Expr::ZERO, Expr::ONE],
+            Some(normal) => self.unit(normal)?,
+        };
+        let to_fixed = |v: &Vector<'g>| turned(&body.rotation, v, |r, i, j| r[(i, j)], graph);
+        let to_body = |v: &Vector<'g>| turned(&body.rotation, v, |r, i, j| r[(j, i)], graph);
+        let centre = sum(&body.place, &to_fixed(&at));
+        // The support of the shape in the direction −n, and the arm from the centre to the point of contact.
+        let (support, arm, along) = match &contact.shape {
+            ContactShape::Sphere { radius } => {
+                let radius = self.resolve(radius, Stage::Joint)?;
+                let arm = normal.map(|n| -radius * n);
+                let omega = to_fixed(&body.turning);
+                let carried = to_fixed(&cross(&body.turning, &at));
+                (radius, arm, sum(&carried, &cross(&omega, &arm)))
+            }
+            ContactShape::Disc { radius, axis } => {
+                let radius = self.resolve(radius, Stage::Joint)?;
+                let length = axis.iter().fold(0.0f64, |length, part| length.hypot(*part));
+                let axle = axis.map(|part| Expr::from(part / length));
+                let n = to_body(&normal);
+                let lean = dot(&n, &axle);
+                let across = [0, 1, 2].map(|i| n[i] - lean * axle[i]);
+                let size = dot(&across, &across).sqrt();
+                let arm = across.map(|part| -radius * part / size);
+                (radius * size, to_fixed(&arm), to_fixed(&cross(&body.turning, &sum(&at, &arm))))
+            }
+            ContactShape::Ellipsoid { semi_axes } => {
+                let squares = self.constants(semi_axes)?.map(|half| half.square());
+                let n = to_body(&normal);
+                let scaled = [0, 1, 2].map(|i| squares[i] * n[i]);
+                let size = dot(&scaled, &n).sqrt();
+                let arm = scaled.map(|part| -part / size);
+                (size, to_fixed(&arm), to_fixed(&cross(&body.turning, &sum(&at, &arm))))
+            }
+        };
+        let velocity = sum(&body.velocity, &along);
+        let [x, y, z] = sum(&centre, &arm);
+        let from_plane = [0, 1, 2].map(|i| centre[i] - through[i]);
+        let gap = dot(&normal, &from_plane) - support;
+        let [first, second] = tangents(contact.first_tangent(), &normal);
+        Ok([x, y, z, gap, dot(&first, &velocity), dot(&second, &velocity)])
+    }
+
+    fn vector(&mut self, list: Option<&[Expression; 3]>) -> Result<Vector<'g>, ModelError> {
+        list.map_or(Ok([Expr::ZERO; 3]), |list| self.constants(list))
+    }
+
+    /// The unit vector in the direction of a normal.
+    fn unit(&mut self, normal: &[Expression; 3]) -> Result<Vector<'g>, ModelError> {
+        let value = self.constants(normal)?;
+        let length = self.graph.dot(value, value).sqrt();
+        if length.is_zero() {
+            return Err(self.error(&normal[0], normal[0].ast.span, |_| MeaningError::ZeroAxis));
+        }
+        Ok(value.map(|part| part / length))
+    }
+
+    /// The motion of the body of a contact.
+    fn moving(&mut self, contact: &Contact) -> Result<Moving<'g>, ModelError> {
+        let document = self.document;
+        let placed = document.bodies.iter().find(|body| body.name.text == contact.body.value);
+        let Some(body) = placed else { return self.moving_on_joint(&contact.body.value) };
+        let mut place = [Expr::ZERO; 3];
+        for (value, part) in place.iter_mut().zip(&body.position) {
+            *value = self.resolve(part, Stage::Position)?;
+        }
+        let rates = self.rates();
+        let velocity = self.graph.directional(&place, &rates);
+        let velocity = [velocity[0], velocity[1], velocity[2]];
+        let entries = match (&body.orientation, &contact.attitude) {
+            (Some(Orientation::Rotation(entries)), _) => entries,
+            (_, Some(attitude)) => &attitude.value,
+            _ => return Ok(Moving { place, rotation: unit_matrix(), velocity, turning: [Expr::ZERO; 3] }),
+        };
+        let mut values = [Expr::ZERO; 9];
+        for (value, entry) in values.iter_mut().zip(entries.iter()) {
+            *value = self.resolve(entry, Stage::Position)?;
+        }
+        let rotation = Matrix::from_fn(3, 3, |i, j| values[3 * i + j]);
+        let turning = match &body.orientation {
+            Some(Orientation::AngularVelocity(components)) => {
+                let mut omega = [Expr::ZERO; 3];
+                for (value, part) in omega.iter_mut().zip(components.iter()) {
+                    *value = self.resolve(part, Stage::Constraint)?;
+                }
+                omega
+            }
+            _ => {
+                let rates = self.graph.directional(&values, &rates);
+                // ω_1 = Σ R_i3 R'_i2, and so on round: RᵀR' is antisymmetric.
+                [(2, 1), (0, 2), (1, 0)].map(|(j, k)| {
+                    let column = |of: &[Expr<'g>], j: usize| [of[j], of[3 + j], of[6 + j]];
+                    self.graph.dot(column(&values, j), column(&rates, k))
+                })
+            }
+        };
+        Ok(Moving { place, rotation, velocity, turning })
+    }
+
+    fn moving_on_joint(&mut self, body: &str) -> Result<Moving<'g>, ModelError> {
+        let tree = self.kinematic_tree()?;
+        let motions = tree.motions();
+        let zero = [Expr::ZERO; 3]; // bodies of contacts are in the tree
+        let rotation = motions.rotation(body).unwrap_or_else(unit_matrix);
+        let velocity = motions.velocity(body).unwrap_or(zero);
+        Ok(Moving {
+            place: motions.place(body).unwrap_or(zero),
+            velocity: turned(&rotation, &velocity, |r, i, j| r[(i, j)], self.graph),
+            turning: motions.angular_velocity(body).unwrap_or(zero),
+            rotation,
+        })
+    }
+
+    /// The bodies on joints, without their masses.
+    pub(super) fn kinematic_tree(&mut self) -> Result<Tree<'g>, ModelError> {
+        let document = self.document;
+        let mut bodies = Vec::with_capacity(document.tree.len());
+        for body in &document.tree {
+            bodies.push(hung(body, self.joint(&body.joint)?));
+        }
+        Tree::new(self.graph, bodies).map_err(|error| document.derivation_error(error))
+    }
+
+    /// The coordinates with their velocities x', and time with its rate.
+    pub(super) fn rates(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
+        self.coordinates().into_iter().zip(self.velocities()).chain([(self.time, Expr::ONE)]).collect()
+    }
+}
+
+/// The values of contacts, by their numbers; none for one that is being found.
+pub(super) type Contacts<'g> = HashMap<usize, Option<[Expr<'g>; 6]>>;
+
+/// Two unit vectors along the plane: the projection of a fixed axis, and n × this.
+fn tangents<'g>(axis: usize, normal: &Vector<'g>) -> [Vector<'g>; 2] {
+    let share = normal[axis];
+    let size = (Expr::ONE - share.square()).sqrt();
+    let own = |i: usize| if i == axis { Expr::ONE } else { Expr::ZERO };
+    let first = [0, 1, 2].map(|i| (own(i) - share * normal[i]) / size);
+    [first, cross(normal, &first)]
+}
+
+fn unit_matrix<'g>() -> Matrix<Expr<'g>> {
+    Matrix::from_fn(3, 3, |i, j| if i == j { Expr::ONE } else { Expr::ZERO })
+}
+
+/// R v, or Rᵀ v, according to the order of the indices in `entry`.
+fn turned<'g>(
+    rotation: &Matrix<Expr<'g>>,
+    v: &Vector<'g>,
+    entry: impl Fn(&Matrix<Expr<'g>>, usize, usize) -> Expr<'g>,
+    graph: &'g pc_mech::Graph,
+) -> Vector<'g> {
+    [0, 1, 2].map(|i| graph.dot((0..3).map(|j| entry(rotation, i, j)), v.iter().copied()))
+}
+
+fn sum<'g>(a: &Vector<'g>, b: &Vector<'g>) -> Vector<'g> {
+    [0, 1, 2].map(|i| a[i] + b[i])
+}
+
+fn cross<'g>(a: &Vector<'g>, b: &Vector<'g>) -> Vector<'g> {
+    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| a[i] * b[j] - a[j] * b[i])
+}

@@ -1,0 +1,244 @@
+//! Contacts of bodies with planes, as terms.
+//!
+//! The point of contact p is found along fixed axes: the point of the edge of a disc, or of the surface x·A⁻¹x = 1 of an
+//! ellipsoid, at which −n is the outward normal,
+//!
+//!   p = c − r (n − (n·e) e)/|n − (n·e) e|,    p = c − A n/√(n·A n),    A = R diag(a²) Rᵀ.
+//!
+//! The gap is the height of p above the plane. The material point there has, from c and the axes of the body, the
+//! velocity ċ + Ṙ Rᵀ (p − c), or v + ω × (p − x) where ω is given.
+
+use pc_model::document::{Contact, ContactShape, Document, Expression, Orientation};
+
+use crate::error::Unable;
+use crate::text::term::{Function, Names, Term};
+use crate::text::tree::Tree;
+
+/// A contact of a body whose place and attitude are these terms.
+pub(crate) struct Touching<'a> {
+    contact: &'a Contact,
+    names: &'a Names,
+    /// The reference point of the body, and its rotation, row by row.
+    place: Vec<Term>,
+    rotation: Vec<Term>,
+}
+
+impl<'a> Touching<'a> {
+    /// The contact of a body on a joint; `None` for one that is placed.
+    pub(crate) fn on_joint(contact: &'a Contact, tree: &Tree<'_>, names: &'a Names) -> Option<Touching<'a>> {
+        let (rotation, place) = tree.placed(&contact.body.value)?;
+        Some(Touching { contact, names, place, rotation })
+    }
+
+    fn placed(
+        contact: &'a Contact,
+        document: &Document,
+        names: &'a Names,
+    ) -> Result<(Touching<'a>, Option<Vec<Term>>), Unable> {
+        let term = |part: &Expression| names.resolve(&part.ast);
+        let terms = |list: &[Expression]| list.iter().map(term).collect::<Result<Vec<Term>, Unable>>();
+        let body = document.bodies.iter().find(|body| body.name.text == contact.body.value);
+        let body = body.ok_or_else(|| Unable::UnknownName { name: contact.body.value.clone() })?;
+        let (rotation, omega) = match (&body.orientation, &contact.attitude) {
+            (Some(Orientation::AngularVelocity(omega)), Some(attitude)) => {
+                (terms(&attitude.value[..])?, Some(terms(&omega[..])?))
+            }
+            (Some(Orientation::Rotation(rotation)), _) => (terms(&rotation[..])?, None),
+            _ => return Err(Unable::UnknownName { name: contact.body.value.clone() }),
+        };
+        Ok((Touching { contact, names, place: terms(&body.position)?, rotation }, omega))
+    }
+
+    /// The point of contact.
+    pub(crate) fn point(&self) -> Result<Vec<Term>, Unable> {
+        let n = self.normal()?;
+        let arm = match &self.contact.shape {
+            ContactShape::Sphere { radius } => {
+                let radius = self.names.resolve(&radius.ast)?;
+                n.iter().map(|n| negative(times([&radius, n]))).collect()
+            }
+            ContactShape::Disc { radius, axis } => {
+                let radius = self.names.resolve(&radius.ast)?;
+                let length = axis.iter().map(|part| part * part).sum::<f64>().sqrt();
+                let axle: Vec<Term> = axis.iter().map(|part| Term::Number(part / length)).collect();
+                let axle = self.to_fixed(&axle);
+                let lean = dot(&n, &axle);
+                let across: Vec<Term> =
+                    n.iter().zip(&axle).map(|(n, e)| difference(n.clone(), times([&lean, e]))).collect();
+                let size = root(dot(&across, &across));
+                across.iter().map(|part| negative(quotient(times([&radius, part]), &size))).collect()
+            }
+            ContactShape::Ellipsoid { semi_axes } => {
+                // A n = Σ a_j² (n·u_j) u_j with the axes u_j, the columns of R.
+                let mut image: Vec<Vec<Term>> = vec![Vec::new(); 3];
+                for (j, half) in semi_axes.iter().enumerate() {
+                    let half = self.names.resolve(&half.ast)?;
+                    let axis: Vec<Term> = (0..3).map(|i| self.rotation[3 * i + j].clone()).collect();
+                    let share = times([&half, &half, &dot(&n, &axis)]);
+                    image.iter_mut().zip(&axis).for_each(|(row, u)| row.push(times([&share, u])));
+                }
+                let image: Vec<Term> = image.into_iter().map(sum).collect();
+                let size = root(dot(&n, &image));
+                image.into_iter().map(|part| negative(quotient(part, &size))).collect::<Vec<_>>()
+            }
+        };
+        Ok(added(&self.centre()?, &arm))
+    }
+
+    fn centre(&self) -> Result<Vec<Term>, Unable> {
+        Ok(match &self.contact.at {
+            Some(at) => {
+                let at: Vec<Term> =
+                    at.iter().map(|part| self.names.resolve(&part.ast)).collect::<Result<_, _>>()?;
+                added(&self.place, &self.to_fixed(&at))
+            }
+            None => self.place.clone(),
+        })
+    }
+
+    fn normal(&self) -> Result<Vec<Term>, Unable> {
+        let Some(normal) = &self.contact.normal else { return Ok(unit(2)) };
+        let normal: Vec<Term> =
+            normal.iter().map(|part| self.names.resolve(&part.ast)).collect::<Result<_, _>>()?;
+        let length = root(dot(&normal, &normal));
+        Ok(normal.into_iter().map(|part| quotient(part, &length)).collect())
+    }
+
+    fn to_fixed(&self, v: &[Term]) -> Vec<Term> {
+        self.rotation.chunks(3).map(|row| dot(row, v)).collect()
+    }
+
+    /// The components of the contact, whose point of contact is `point`; `omega` is the angular velocity along the axes
+    /// of the rotation, if it is given.
+    fn components(&self, point: Vec<Term>, omega: Option<&[Term]>) -> Result<Vec<Term>, Unable> {
+        let n = self.normal()?;
+        let through = match &self.contact.through {
+            Some(through) => {
+                through.iter().map(|part| self.names.resolve(&part.ast)).collect::<Result<_, _>>()?
+            }
+            None => vec![Term::Number(0.0); 3],
+        };
+        let above: Vec<Term> =
+            point.iter().zip(&through).map(|(p, q)| difference(p.clone(), q.clone())).collect();
+        let gap = dot(&n, &above);
+        let velocity = match omega {
+            Some(omega) => {
+                let arm = self.arm(&point, &self.place);
+                added(&rates(&self.place), &cross(&self.to_fixed(omega), &arm))
+            }
+            None => {
+                let centre = self.centre()?;
+                let arm = self.arm(&point, &centre);
+                let own: Vec<Term> = (0..3)
+                    .map(|j| dot(&(0..3).map(|i| self.rotation[3 * i + j].clone()).collect::<Vec<_>>(), &arm))
+                    .collect();
+                let turning = self.rotation.chunks(3).map(|row| dot(&rates(row), &own)).collect::<Vec<_>>();
+                added(&rates(&centre), &turning)
+            }
+        };
+        // The projection of a fixed axis onto the plane, scaled to a unit vector, and n × this.
+        let axis = self.contact.first_tangent();
+        let share = &n[axis];
+        let projected: Vec<Term> =
+            unit(axis).into_iter().zip(&n).map(|(e, n)| difference(e, times([share, n]))).collect();
+        let size = root(dot(&projected, &projected));
+        let first: Vec<Term> = projected.into_iter().map(|part| quotient(part, &size)).collect();
+        let slips = [dot(&first, &velocity), dot(&cross(&n, &first), &velocity)];
+        Ok(point.into_iter().chain([gap]).chain(slips).collect())
+    }
+
+    fn arm(&self, point: &[Term], from: &[Term]) -> Vec<Term> {
+        point.iter().zip(from).map(|(p, c)| difference(p.clone(), c.clone())).collect()
+    }
+}
+
+/// The names of the components of contacts, with their terms.
+pub(crate) fn components(
+    document: &Document,
+    tree: &Tree<'_>,
+    names: &Names,
+) -> Result<Vec<(String, Term)>, Unable> {
+    let mut all = Vec::new();
+    for (number, contact) in document.contacts.iter().enumerate() {
+        let values = match Touching::on_joint(contact, tree, names) {
+            Some(touching) => touching.components(tree.point_of_contact(number), None)?,
+            None => {
+                let (touching, omega) = Touching::placed(contact, document, names)?;
+                touching.components(touching.point()?, omega.as_deref())?
+            }
+        };
+        all.extend(contact.components.iter().map(|name| name.text.clone()).zip(values));
+    }
+    Ok(all)
+}
+
+fn is(term: &Term, value: f64) -> bool {
+    matches!(term, Term::Number(number) if *number == value)
+}
+
+fn unit(axis: usize) -> Vec<Term> {
+    (0..3).map(|i| Term::Number(f64::from(u8::from(i == axis)))).collect()
+}
+
+fn times<const N: usize>(factors: [&Term; N]) -> Term {
+    if factors.iter().any(|factor| is(factor, 0.0)) {
+        return Term::Number(0.0);
+    }
+    let mut factors: Vec<(bool, Term)> =
+        factors.into_iter().filter(|factor| !is(factor, 1.0)).map(|factor| (false, factor.clone())).collect();
+    match factors.len() {
+        0 => Term::Number(1.0),
+        1 => factors.remove(0).1,
+        _ => Term::Product(factors),
+    }
+}
+
+fn quotient(term: Term, by: &Term) -> Term {
+    if is(&term, 0.0) || is(by, 1.0) { term } else { Term::Product(vec![(false, term), (true, by.clone())]) }
+}
+
+fn sum(terms: Vec<Term>) -> Term {
+    let mut terms: Vec<(bool, Term)> =
+        terms.into_iter().filter(|term| !is(term, 0.0)).map(|term| (false, term)).collect();
+    match terms.len() {
+        0 => Term::Number(0.0),
+        1 => terms.remove(0).1,
+        _ => Term::Sum(terms),
+    }
+}
+
+fn negative(term: Term) -> Term {
+    if is(&term, 0.0) { term } else { Term::Negative(Box::new(term)) }
+}
+
+fn difference(a: Term, b: Term) -> Term {
+    match (is(&a, 0.0), is(&b, 0.0)) {
+        (_, true) => a,
+        (true, false) => negative(b),
+        (false, false) => Term::Sum(vec![(false, a), (true, b)]),
+    }
+}
+
+fn root(term: Term) -> Term {
+    if is(&term, 1.0) { term } else { Term::Call(Function::Sqrt, vec![term]) }
+}
+
+fn dot(a: &[Term], b: &[Term]) -> Term {
+    sum(a.iter().zip(b).map(|(a, b)| times([a, b])).collect())
+}
+
+fn added(a: &[Term], b: &[Term]) -> Vec<Term> {
+    a.iter().zip(b).map(|(a, b)| sum(vec![a.clone(), b.clone()])).collect()
+}
+
+fn rates(terms: &[Term]) -> Vec<Term> {
+    let rate = |term: &Term| match term {
+        Term::Number(_) => Term::Number(0.0),
+        term => Term::Rate(Box::new(term.clone())),
+    };
+    terms.iter().map(rate).collect()
+}
+
+fn cross(a: &[Term], b: &[Term]) -> Vec<Term> {
+    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| difference(times([&a[i], &b[j]]), times([&a[j], &b[i]]))).to_vec()
+}
