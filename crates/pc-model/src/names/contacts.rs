@@ -193,7 +193,7 @@ impl<'g> Scope<'g, '_> {
 
     /// The coordinates with their velocities x', and time with its rate.
     pub(super) fn rates(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
-        self.coordinates().into_iter().zip(self.velocities()).chain([(self.time, Expr::ONE)]).collect()
+        self.coordinates().into_iter().zip(self.velocities()).chain(self.graph.in_time(self.time)).collect()
     }
 }
 

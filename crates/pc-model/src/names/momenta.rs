@@ -197,7 +197,7 @@ impl<'g> Scope<'g, '_> {
         let dot = |a: &[Expr<'g>; 3], b: &[Expr<'g>; 3]| graph.dot(a.iter().copied(), b.iter().copied());
         let mass = self.resolve(&body.mass, Stage::Inertia)?;
         let centre = self.each(&body.position, Stage::Position)?;
-        let velocity = self.rates(&centre);
+        let velocity = graph.directional(&centre, &self.rates());
         let velocity = [0, 1, 2].map(|i| velocity[i]);
         let inertia = match &body.inertia {
             None => [Expr::ZERO; 6],
@@ -237,19 +237,12 @@ impl<'g> Scope<'g, '_> {
     /// The angular velocity ω̂ = RᵀṘ along the axes of the body, of a multiple R of a rotation.
     fn turning(&self, rotation: &[Expr<'g>; 9]) -> [Expr<'g>; 3] {
         let graph = self.graph;
-        let rates = self.rates(rotation);
+        let rates = graph.directional(rotation, &self.rates());
         let size = graph.dot(rotation.iter().copied(), rotation.iter().copied()) / 3.0;
         let entry = |i: usize, j: usize| {
             graph.dot((0..3).map(|l| rotation[3 * l + i]), (0..3).map(|l| rates[3 * l + j]))
         };
         [(2, 1), (0, 2), (1, 0)].map(|(i, j)| (entry(i, j) - entry(j, i)) / (2.0 * size))
-    }
-
-    /// ∂f/∂t + x' ∂f/∂x of functions of position.
-    fn rates(&self, functions: &[Expr<'g>]) -> Vec<Expr<'g>> {
-        let mut along: Vec<_> = self.coordinates().into_iter().zip(self.velocities()).collect();
-        along.push((self.time, Expr::ONE));
-        self.graph.directional(functions, &along)
     }
 
     /// The bodies on joints.
