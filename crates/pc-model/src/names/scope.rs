@@ -377,6 +377,7 @@ impl<'g, 'd> Scope<'g, 'd> {
                 Ok(symbol)
             }
             _ if self.is_other(name) => Ok(self.graph.symbol(name)),
+            _ if self.reaction_of_contact(name).is_some() => refuse(self),
             _ => {
                 let fault = |_| MeaningError::UnknownName { name: name.to_owned(), known: self.known() };
                 Err(self.error(expression, span, fault))
