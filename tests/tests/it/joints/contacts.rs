@@ -365,19 +365,16 @@ fn a_tricycle_steers() {
 
 /// The lines of a text in which a motion is formulated, without its parameters, start values and drawings.
 fn formulated(text: &str) -> usize {
-    let mut section = "";
-    let counts = |line: &&str| {
+    let given = ["[parameters]", "[model]", "[simulation]", "[coordinates]", "[[draw]]", "[outputs]"];
+    let (mut section, mut count) = ("", 0);
+    for line in text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#')) {
         if line.starts_with('[') {
             section = line;
         }
-        let given = ["[parameters]", "[model]", "[simulation]", "[coordinates]", "[[draw]]", "[outputs]"];
         let is_start = section.starts_with("[quasi_velocities]") && !line.contains("is =");
-        !line.is_empty()
-            && !line.starts_with('#')
-            && !given.iter().any(|s| section.starts_with(s))
-            && !is_start
-    };
-    text.lines().map(str::trim).filter(counts).count()
+        count += usize::from(!is_start && !given.iter().any(|given| section.starts_with(given)));
+    }
+    count
 }
 
 /// Contacts say in fewer lines, and without a formula, what is worked out by hand in the built-in models.
