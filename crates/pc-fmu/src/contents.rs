@@ -144,12 +144,22 @@ impl<'g> Contents<'g> {
                 "The motion of the model goes back in time, an FMU forward: it has no stop time.".to_owned(),
             );
         }
-        let accelerations = system.accelerations().into_iter().zip(equations.accelerations()).collect();
+        let accelerations: Vec<_> =
+            system.accelerations().into_iter().zip(equations.accelerations()).collect();
+        let forces = match assembly.has_events_on_reactions() {
+            true => assembly.forces_of_contacts(),
+            false => Vec::new(),
+        };
+        let force = |(name, symbol): (String, Expr<'g>)| {
+            let (_, value) = system.outputs().iter().find(|(output, _)| *output == name)?;
+            Some((symbol, graph.substitute(&[*value], &accelerations)[0]))
+        };
+        let forces: Vec<_> = forces.into_iter().filter_map(force).collect();
         Ok(Contents {
             accelerations,
             is_fixed,
             has_derivatives,
-            events: events(assembly, &form, &known)?,
+            events: events(assembly, &form, &known, &forces)?,
             time: system.frame().time(),
             states: states.collect(),
             symbols,

@@ -16,7 +16,8 @@ pub(crate) struct FmuEvent<'g> {
     pub(crate) after: Vec<Expr<'g>>,
 }
 
-/// The events, `known` being all quasi-velocities of the model in terms of the state of the form.
+/// The events, `known` being all quasi-velocities of the model and `forces` those of contacts, in terms of the state of the
+/// form.
 ///
 /// # Errors
 /// [`FmuError`] for resets that have no formula.
@@ -24,6 +25,7 @@ pub(crate) fn events<'g>(
     assembly: &Assembly<'g>,
     form: &FreeForm<'g>,
     known: &[(Expr<'g>, Expr<'g>)],
+    forces: &[(Expr<'g>, Expr<'g>)],
 ) -> Result<Vec<FmuEvent<'g>>, FmuError> {
     let (whole, graph) = (&assembly.system, assembly.system.graph());
     let coordinates = whole.frame().coordinates();
@@ -58,7 +60,7 @@ pub(crate) fn events<'g>(
             .collect();
         events.push(FmuEvent {
             name: event.name.clone(),
-            when: in_form(&[event.when])[0],
+            when: graph.substitute(&in_form(&[event.when]), forces)[0],
             direction: event.direction,
             is_terminal: event.terminal,
             is_reset: !event.resets.is_empty(),

@@ -54,7 +54,7 @@ impl<'g> Assembly<'g> {
     }
 
     /// The forces of contacts: the names of the outputs that contain them, with the symbols λ of the reactions.
-    pub(crate) fn forces_of_contacts(&self) -> Vec<(String, Expr<'g>)> {
+    pub fn forces_of_contacts(&self) -> Vec<(String, Expr<'g>)> {
         let forces = self.document.contacts.iter().flat_map(Contact::reactions);
         let graph = self.system.graph();
         forces.map(|(force, constraint)| (force, graph.symbol(&format!("λ_{constraint}")))).collect()

@@ -82,7 +82,7 @@ pub enum ContactShape {
 impl Contact {
     const ENDS: [&'static str; 6] = ["x", "y", "z", "gap", "slip_1", "slip_2"];
     /// The index of the gap among the components; the velocities of slip follow it.
-    pub const GAP: usize = 3;
+    pub(crate) const GAP: usize = 3;
 
     /// The index of the component with this name.
     pub fn component(&self, name: &str) -> Option<usize> {

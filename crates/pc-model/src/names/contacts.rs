@@ -95,7 +95,7 @@ impl<'g> Scope<'g, '_> {
                 (radius * size, to_fixed(&arm), to_fixed(&cross(&body.turning, &sum(&at, &arm))))
             }
             ContactShape::Ellipsoid { semi_axes } => {
-                let squares = self.constants(semi_axes)?.map(|half| half.square());
+                let squares = self.constants(semi_axes)?.map(Expr::square);
                 let n = to_body(&normal);
                 let scaled = [0, 1, 2].map(|i| squares[i] * n[i]);
                 let size = dot(&scaled, &n).sqrt();

@@ -392,6 +392,7 @@ impl<'g, 'd> Scope<'g, 'd> {
                 Ok(symbol)
             }
             _ if self.is_other(name) => Ok(self.graph.symbol(name)),
+            _ if self.reaction_of_contact(name).is_some() => refuse(self),
             _ => {
                 if let Some(observed) = self.observed(name) {
                     return match stage {

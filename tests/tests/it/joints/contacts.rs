@@ -150,7 +150,7 @@ m = 1.0
 A = 2e-4
 B = 1.6e-3
 C = 1.7e-3
-d = 0.0143
+"δ" = 0.0143
 [coordinates]
 stone_z = "sqrt((a*cos(0.01)*sin(0.02))^2 + (b*sin(0.01))^2 + (c*cos(0.01)*cos(0.02))^2) - h*cos(0.01)*cos(0.02)"
 stone_q0 = "cos(0.005)*cos(0.01)"
@@ -166,7 +166,7 @@ acceleration = [0, 0, -9.81]
 [bodies.stone]
 joint = { kind = "free" }
 mass = "m"
-inertia = ["A*cos(d)^2 + B*sin(d)^2", "A*sin(d)^2 + B*cos(d)^2", "C", "(A - B)*sin(d)*cos(d)", 0, 0]
+inertia = ["A*cos(δ)^2 + B*sin(δ)^2", "A*sin(δ)^2 + B*cos(δ)^2", "C", "(A - B)*sin(δ)*cos(δ)", 0, 0]
 [contacts.ground]
 body = "stone"
 shape = "ellipsoid"
@@ -365,19 +365,16 @@ fn a_tricycle_steers() {
 
 /// The lines of a text in which a motion is formulated, without its parameters, start values and drawings.
 fn formulated(text: &str) -> usize {
-    let mut section = "";
-    let counts = |line: &&str| {
+    let given = ["[parameters]", "[model]", "[simulation]", "[coordinates]", "[[draw]]", "[outputs]"];
+    let (mut section, mut count) = ("", 0);
+    for line in text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#')) {
         if line.starts_with('[') {
             section = line;
         }
-        let given = ["[parameters]", "[model]", "[simulation]", "[coordinates]", "[[draw]]", "[outputs]"];
         let is_start = section.starts_with("[quasi_velocities]") && !line.contains("is =");
-        !line.is_empty()
-            && !line.starts_with('#')
-            && !given.iter().any(|s| section.starts_with(s))
-            && !is_start
-    };
-    text.lines().map(str::trim).filter(counts).count()
+        count += usize::from(!is_start && !given.iter().any(|given| section.starts_with(given)));
+    }
+    count
 }
 
 /// Contacts say in fewer lines, and without a formula, what is worked out by hand in the built-in models.
@@ -461,7 +458,248 @@ fn random_contacts_are_derived_alike_by_both_routes() {
 }
 
 /// A ball with an entry of its contact, or a whole contact, and the message.
-const REFUSED: &[(&str, &str)] = &[];
+const REFUSED: &[(&str, &str)] = &[
+    (
+        r#"shape = "sphere"
+radius = 1
+motion = "rolls"
+"#,
+        r#"m.toml:5:1: [contacts.c]: `body` is missing
+    [contacts.c]
+    ^^^^^^^^^^^^
+  help: add `body = "…"`"#,
+    ),
+    (
+        r#"body = "bal"
+shape = "sphere"
+radius = 1
+motion = "rolls"
+"#,
+        r#"m.toml:6:8: [contacts.c] body: no body is called `bal`
+    body = "bal"
+           ^^^^^
+  help: did you mean `ball`? the bodies are ball"#,
+    ),
+    (
+        r#"body = "ball"
+shape = "cube"
+motion = "rolls"
+"#,
+        r#"m.toml:7:9: [contacts.c] shape: `cube` is not one of the choices
+    shape = "cube"
+            ^^^^^^
+  help: the choices are disc, sphere, ellipsoid"#,
+    ),
+    (
+        r#"body = "ball"
+shape = "disc"
+radius = 1
+motion = "rolls"
+"#,
+        r#"m.toml:5:1: [contacts.c]: `axis` is missing
+    [contacts.c]
+    ^^^^^^^^^^^^
+  help: add `axis = [0, 0, 1]`"#,
+    ),
+    (
+        r#"body = "ball"
+shape = "sphere"
+radius = 1
+semi_axes = [1, 1, 1]
+motion = "rolls"
+"#,
+        r#"m.toml:9:1: [contacts.c] semi_axes: contacts of this shape have no `semi_axes`
+    semi_axes = [1, 1, 1]
+    ^^^^^^^^^
+  help: write `radius = "r"`, or leave `semi_axes` out"#,
+    ),
+    (
+        r#"body = "ball"
+shape = "sphere"
+radius = 1
+axis = [0, 0, 1]
+motion = "rolls"
+"#,
+        r#"m.toml:9:1: [contacts.c] axis: contacts of this shape have no `axis`
+    axis = [0, 0, 1]
+    ^^^^
+  help: write `shape = "disc"`, or leave `axis` out"#,
+    ),
+    (
+        r#"body = "ball"
+shape = "sphere"
+radius = "ball_z"
+motion = "rolls"
+"#,
+        r#"m.toml:8:11: [contacts.c] radius: `ball_z` cannot be used in a joint, a point, or the mass of a body with a joint
+    radius = "ball_z"
+              ^^^^^^
+  help: use numbers, parameters and definitions made of them only"#,
+    ),
+    (
+        r#"body = "ball"
+shape = "sphere"
+radius = 1
+motion = "rolls"
+normal = [0, 0, 0]
+"#,
+        r#"m.toml:10:11: [contacts.c] normal: the axis has length 0
+    normal = [0, 0, 0]
+              ^
+  help: give it a direction, such as `[0, 0, 1]`"#,
+    ),
+    (
+        r#"body = "ball"
+shape = "sphere"
+radius = 1
+motion = "rols"
+"#,
+        r#"m.toml:9:10: [contacts.c] motion: `rols` is not one of the choices
+    motion = "rols"
+             ^^^^^^
+  help: did you mean `rolls`? The choices are rolls, slides"#,
+    ),
+    (
+        r#"body = "ball"
+shape = "sphere"
+radius = 1
+motion = "rolls"
+attitude = [1, 0, 0, 0, 1, 0, 0, 0, 1]
+"#,
+        r#"m.toml:10:12: [contacts.c] attitude: `attitude` has no effect without `angular_velocity`
+    attitude = [1, 0, 0, 0, 1, 0, 0, 0, 1]
+               ^^^^^^^^^^^^^^^^^^^^^^^^^^^
+  help: add `angular_velocity = ["w1", "w2", "w3"]`, or leave `attitude` out"#,
+    ),
+    (
+        r#"body = "ball"
+shape = "sphere"
+radius = 1
+motion = "rolls"
+friction = 0.1
+"#,
+        r#"m.toml:10:1: [contacts.c] friction: unknown entry `friction`
+    friction = 0.1
+    ^^^^^^^^
+  help: the entries here are body, shape, radius, axis, semi_axes, at, attitude, motion, normal, through, keeps"#,
+    ),
+    (
+        r#"body = "ball"
+shape = "sphere"
+radius = 1
+motion = "rolls"
+"#,
+        r#"m.toml:5:11: [contacts] c: the start is off the constraint `c`: it is -1, not 0
+    [contacts.c]
+              ^
+  help: give a start that satisfies it, or move it there with --project-start (--keep NAMES holds what is to stay)"#,
+    ),
+    (
+        r#"body = "ball"
+shape = "sphere"
+radius = 1
+motion = "rolls"
+[parameters]
+c_gap = 1
+"#,
+        r#"m.toml:11:1: [parameters] c_gap: `c_gap` is already the name of a component of a contact (line 5)
+    c_gap = 1
+    ^^^^^
+  help: parameters, inputs, functions, definitions, coordinates, quasi-velocities, states, integrals and outputs share one namespace; choose another name, such as `c_gap_1`"#,
+    ),
+    (
+        r#"body = "ball"
+shape = "sphere"
+radius = 1
+motion = "rolls"
+[coordinates]
+ball_z = 1
+[constraints]
+c_1 = "ball_x"
+"#,
+        r#"m.toml:5:11: [contacts] c: `c_1` is already the name of a constraint (line 13)
+    [contacts.c]
+              ^
+  help: parameters, inputs, functions, definitions, coordinates, quasi-velocities, states, integrals and outputs share one namespace; choose another name, such as `c_1_1`"#,
+    ),
+    (
+        r#"body = "ball"
+shape = "sphere"
+radius = 1
+motion = "rolls"
+[coordinates]
+ball_z = 1
+[forces]
+ball_x = "N_c"
+"#,
+        r#"m.toml:13:11: [forces] ball_x: `N_c` cannot be used in the Lagrangian or a force
+    ball_x = "N_c"
+              ^^^
+  help: use declared names only"#,
+    ),
+    (
+        r#"body = "ball"
+shape = "sphere"
+radius = 1
+motion = "rolls"
+[coordinates]
+ball_z = 1
+[events.e]
+when = "ball_x - 1"
+reset = { ball_x = "N_c" }
+"#,
+        r#"m.toml:14:21: [events.e] reset.ball_x: `N_c` cannot be used in the reset of an event
+    reset = { ball_x = "N_c" }
+                        ^^^
+  help: use declared names other than forces only"#,
+    ),
+    (
+        r#"body = "p"
+shape = "sphere"
+radius = 1
+motion = "rolls"
+[bodies.p]
+mass = 1
+position = ["ball_x", 0, 1]
+"#,
+        r#"m.toml:6:8: [contacts.c] body: the body `p` is a particle, without a shape that could touch anything
+    body = "p"
+           ^^^
+  help: give it `inertia` and `rotation` or `angular_velocity`, or attach it by a `joint`"#,
+    ),
+    (
+        r#"body = "p"
+shape = "sphere"
+radius = 1
+motion = "rolls"
+[bodies.p]
+mass = 1
+position = ["ball_x", 0, 1]
+inertia = [1, 1, 1]
+angular_velocity = [0, "ball_ω1", 0]
+"#,
+        r#"m.toml:5:11: [contacts] c: `attitude` is missing
+    [contacts.c]
+              ^
+  help: add `attitude = [1, 0, 0, 0, 1, 0, 0, 0, 1]`"#,
+    ),
+    (
+        r#"body = "p"
+shape = "sphere"
+radius = 1
+motion = "rolls"
+[bodies.p]
+mass = 1
+position = ["c_x", 0, 1]
+inertia = [1, 1, 1]
+rotation = [1, 0, 0, 0, 1, 0, 0, 0, 1]
+"#,
+        r#"m.toml:12:14: [bodies.p] position: `c_x` cannot be used in the mass, inertia, position or rotation of a body
+    position = ["c_x", 0, 1]
+                 ^^^
+  help: use parameters, coordinates and t only"#,
+    ),
+];
 
 #[test]
 fn wrong_contacts_are_refused() {
