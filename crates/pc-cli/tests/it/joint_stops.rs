@@ -279,16 +279,16 @@ fn stick_and_slip_by_turns() {
     let text = "[parameters]\nV = 0.5\n[bodies.b]\nmass = 1.0\n\
                 joint = { kind = \"prismatic\", axis = [1, 0, 0], friction = 0.5, stiction = 1.0 }\n\
                 [lagrangian]\npotential = \"(b - V*t)^2/2\"\n";
-    for method in ["auto", "adams", "bdf"] {
+    for (method, tolerance) in [("auto", 1e-8), ("adams", 1e-8), ("bdf", 1e-7)] {
         let moves = run(text, &["--t-end", "40", "--samples", "3", "--method", method, "--rtol", "1e-11"]);
         let sticks = slides(&moves, "b'");
         assert!(sticks.len() > 4, "{sticks:?}");
         let (q, mut from) = (0.5 / 0.5, 0.0);
         let mut until = 1.0 / 0.5;
         for (found_from, found_until) in sticks {
-            assert_near(found_from, from, 1e-8);
+            assert_near(found_from, from, tolerance);
             let Some(found_until) = found_until else { continue };
-            assert_near(found_until, until, 1e-8);
+            assert_near(found_until, until, tolerance);
             from = until + 2.0 * PI - 2.0 * f64::atan(q);
             until = from + 2.0 * 0.5 / 0.5;
         }
