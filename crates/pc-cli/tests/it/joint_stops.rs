@@ -247,10 +247,9 @@ fn loops_stay_closed_in_an_impact() {
     assert_near(last(&turns, "coupler'"), -0.5, 1e-7);
 }
 
-/// Fingers of a hand under weight, each joint at its stop: all of them rest there, in few steps.
-#[test]
-fn a_hand_rests_on_its_stops() {
-    let mut text = String::from("[gravity]\nacceleration = [0, 0, -9.81]\n");
+/// Two fingers of four joints under their weight, with these starts.
+fn hand(starts: &str) -> String {
+    let mut text = format!("[coordinates]\n{starts}[gravity]\nacceleration = [0, 0, -9.81]\n");
     for i in 0..8 {
         let (parent, at) = match i % 4 {
             0 => (String::new(), format!("[0, {:?}, 0]", 0.05 * f64::from(i / 4))),
@@ -263,12 +262,30 @@ fn a_hand_rests_on_its_stops() {
         )
         .unwrap();
     }
-    let end = run(&text, &["--t-end", "100", "--samples", "11"]);
+    text
+}
+
+/// Each joint at its stop: all of them rest there, in few steps.
+#[test]
+fn a_hand_rests_on_its_stops() {
+    let end = run(&hand(""), &["--t-end", "100", "--samples", "11"]);
     for i in 0..8 {
-        let angle = last(&end, &format!("f{i}"));
-        assert!(angle.abs() < 1e-9, "f{i} is at {angle}");
+        assert_near(last(&end, &format!("f{i}")), 0.0, 1e-12);
     }
-    assert!(end["summary"]["steps"].as_u64().unwrap() < 300);
+    assert!(end["summary"]["steps"].as_u64().unwrap() < 100);
+}
+
+/// Fingers that fall open strike their stops one after the other and in turn, ever faster, until they rest.
+#[test]
+fn a_hand_falls_open_and_rests() {
+    let end = run(&hand("f0 = -0.5\nf2 = -0.3\nf5 = -0.4\n"), &["--t-end", "10", "--samples", "11"]);
+    for i in 0..8 {
+        // They lie within 1e-9 of the way.
+        assert_near(last(&end, &format!("f{i}")), 0.0, 2e-9);
+        assert_near(last(&end, &format!("f{i}'")), 0.0, 1e-9);
+    }
+    let energy = column(&end, "energy");
+    assert!(energy.last() < energy.first());
 }
 
 /// A block of mass 1 on a spring of stiffness 1 whose end is pulled at V = 1/2, with the friction 1/2 and the stiction 1:
@@ -279,16 +296,16 @@ fn stick_and_slip_by_turns() {
     let text = "[parameters]\nV = 0.5\n[bodies.b]\nmass = 1.0\n\
                 joint = { kind = \"prismatic\", axis = [1, 0, 0], friction = 0.5, stiction = 1.0 }\n\
                 [lagrangian]\npotential = \"(b - V*t)^2/2\"\n";
-    for method in ["auto", "adams", "bdf"] {
+    for (method, tolerance) in [("auto", 1e-8), ("adams", 1e-8), ("bdf", 1e-7)] {
         let moves = run(text, &["--t-end", "40", "--samples", "3", "--method", method, "--rtol", "1e-11"]);
         let sticks = slides(&moves, "b'");
         assert!(sticks.len() > 4, "{sticks:?}");
         let (q, mut from) = (0.5 / 0.5, 0.0);
         let mut until = 1.0 / 0.5;
         for (found_from, found_until) in sticks {
-            assert_near(found_from, from, 1e-8);
+            assert_near(found_from, from, tolerance);
             let Some(found_until) = found_until else { continue };
-            assert_near(found_until, until, 1e-8);
+            assert_near(found_until, until, tolerance);
             from = until + 2.0 * PI - 2.0 * f64::atan(q);
             until = from + 2.0 * 0.5 / 0.5;
         }

@@ -37,12 +37,14 @@ pub struct Event {
     direction: Direction,
     terminal: bool,
     resets: bool,
+    settles: bool,
 }
 
 impl Event {
     /// An event that occurs in either direction and changes nothing.
     pub fn new(name: impl Into<String>) -> Event {
-        Event { name: name.into(), direction: Direction::Both, terminal: false, resets: false }
+        let name = name.into();
+        Event { name, direction: Direction::Both, terminal: false, resets: false, settles: false }
     }
 
     /// This event with the given direction.
@@ -70,6 +72,12 @@ impl Event {
         Event { resets, ..self }
     }
 
+    /// This event; `settles` says whether the motion comes to rest where occurrences follow each other ever faster, so
+    /// that this is no reason to end the integration.
+    pub fn settling(self, settles: bool) -> Event {
+        Event { settles, ..self }
+    }
+
     /// The name of the event, for messages.
     pub fn name(&self) -> &str {
         &self.name
@@ -88,6 +96,11 @@ impl Event {
     /// Whether the event resets the state.
     pub fn resets(&self) -> bool {
         self.resets
+    }
+
+    /// Whether the motion comes to rest where its occurrences follow each other ever faster.
+    pub fn settles(&self) -> bool {
+        self.settles
     }
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::ode::failure::Failure;
-use crate::ode::sliding::SlidingRange;
+use crate::ode::sliding_range::SlidingRange;
 use crate::program::program::Program;
 use crate::time_profile::profile::TimeDependence;
 

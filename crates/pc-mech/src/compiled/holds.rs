@@ -133,13 +133,8 @@ impl Holds {
     /// The side on which f is evaluated where the motion is on this side of a surface, or on the surface.
     pub(super) fn beside(&self, surface: usize, side: f64) -> f64 {
         match self.kinds[surface] {
-            Kind::Stop { reversed } => {
-                if reversed {
-                    -1.0
-                } else {
-                    1.0
-                }
-            }
+            Kind::Stop { reversed: true } => -1.0,
+            Kind::Stop { reversed: false } => 1.0,
             _ if side < 0.0 => -1.0,
             _ => 1.0,
         }

@@ -189,7 +189,9 @@ impl FlowEvents {
 
 fn event(event: &crate::assembly::event::Event<'_>) -> Event {
     let changes = event.changes_state();
-    Event::new(&event.name).direction(event.direction).terminal(event.terminal).resetting(changes)
+    let settles = event.impact.is_some();
+    let made = Event::new(&event.name).direction(event.direction).terminal(event.terminal);
+    made.resetting(changes).settling(settles)
 }
 
 impl Events for FlowEvents {

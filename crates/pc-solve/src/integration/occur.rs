@@ -113,7 +113,11 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             if occurrences[..k].iter().any(|earlier| earlier.event == event) {
                 continue; // its time is noted once
             }
-            let accumulates = self.histories[event].note(t, self.engine.limits().accumulation);
+            let mut limit = self.engine.limits().accumulation;
+            if self.events.events()[event].settles() {
+                limit.within = 0.0;
+            }
+            let accumulates = self.histories[event].note(t, limit);
             if let (Some(t), None) = (accumulates, ending) {
                 let occurrences = self.histories[event].occurrences;
                 let reason = Reason::Accumulation { event: self.name(event), occurrences, t };
