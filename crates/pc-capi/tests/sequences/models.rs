@@ -125,7 +125,7 @@ unsafe fn say(
     let entries = entries.as_ptr();
     // SAFETY: as promised.
     unsafe {
-        match function % 85 {
+        match function % 87 {
             0..4 => pc_model_add_coordinate(model, a, x, error),
             4..8 => pc_model_set_kinetic(model, b, error),
             8 => pc_model_add_quasi_velocity(model, a, b, x, error),
@@ -206,13 +206,13 @@ unsafe fn say(
                 let word = if yes == 1 { c"hold".as_ptr() } else { ptr::null() };
                 pc_model_add_input_table(model, a, times.as_ptr(), values.as_ptr(), count, word, error)
             }
-            81 => {
+            85 => {
                 let (times, values) = ([0.0, 1.0, 2.0 + x], [x, -x, 0.5]);
                 let second = if yes == 1 { values.as_ptr() } else { ptr::null() };
                 let [times, values] = [&times, &values].map(|list| list.as_ptr());
                 pc_model_add_input_curve(model, a, times, values, values, second, count, error)
             }
-            82 => pc_model_add_input_curve_file(
+            86 => pc_model_add_input_curve_file(
                 model,
                 a,
                 z,
