@@ -729,6 +729,19 @@ pc_status pc_model_parse(const char *text,
 pc_status pc_model_from_file(const char *path, pc_model **model, pc_error **error);
 
 /**
+ * Reads a robot in URDF with macros expanded, in MJCF or in SDF, as a model of bodies on joints.
+ * `floating`: whether the root link of a robot in URDF moves freely; otherwise it stands still.
+ * `fix_massless`: whether joints that move no mass are fixed; otherwise they are refused. What a
+ * model cannot express is left out, and said in comments at the head of the text, which
+ * pc_model_text gives.
+ */
+pc_status pc_model_from_robot(const char *path,
+                              int floating,
+                              int fix_massless,
+                              pc_model **model,
+                              pc_error **error);
+
+/**
  * Reads a model that comes with the library, such as "heavy-top-lagrange".
  */
 pc_status pc_model_builtin(const char *name, pc_model **model, pc_error **error);
@@ -985,6 +998,22 @@ pc_status pc_model_add_input_table(pc_model *model,
                                    pc_error **error);
 
 /**
+ * Adds an input that is a smooth function of time: `length` values with their rates, and perhaps
+ * accelerations, at increasing times. Between these it is a polynomial of degree 3 that has the
+ * values and rates at both ends, or of degree 5 with the accelerations too; NULL for accelerations
+ * that are not given. Unlike other inputs it may appear in velocities, momenta, constraints and
+ * positions of bodies. The inputs u' and u'' that follow it in the list of inputs are its rates.
+ */
+pc_status pc_model_add_input_curve(pc_model *model,
+                                   const char *name,
+                                   const double *times,
+                                   const double *values,
+                                   const double *rates,
+                                   const double *accelerations,
+                                   size_t length,
+                                   pc_error **error);
+
+/**
  * Adds an input whose table is a column of a file of comma-separated numbers, the first line of
  * which holds the names of the columns; otherwise this is like pc_model_add_input_table. `time` is
  * the name of the column of times, NULL for "t" or, if there is no such column, for the first one.
@@ -997,6 +1026,19 @@ pc_status pc_model_add_input_file(pc_model *model,
                                   const char *time,
                                   const char *interpolation,
                                   pc_error **error);
+
+/**
+ * Adds an input as pc_model_add_input_curve does, from the columns of a file: of values, of rates,
+ * of accelerations, NULL where these are not given, and of times, as in pc_model_add_input_file.
+ */
+pc_status pc_model_add_input_curve_file(pc_model *model,
+                                        const char *name,
+                                        const char *path,
+                                        const char *column,
+                                        const char *rate,
+                                        const char *acceleration,
+                                        const char *time,
+                                        pc_error **error);
 
 /**
  * Adds a particle, or a rigid body if it is given an inertia. The mass, and the position of the
@@ -1951,6 +1993,23 @@ pc_status pc_system_right_hand_side(const pc_system *system,
                                     double *right,
                                     size_t length,
                                     pc_error **error);
+
+/**
+ * Writes the generalised forces tau = M η̇ + h - Q that have to be added to the forces Q of the model
+ * for the accelerations η̇ at (t, y): inverse dynamics. Both lists have k numbers, with k as in
+ * pc_system_mass_matrix; null accelerations stand for zeros, so that tau is what the motion itself
+ * requires, and in a state at rest what holds the system there. The forces of constraints that
+ * multipliers hold are part of tau. For bodies on joints tau is found from body to body. The first call derives equations, as pc_system_new does.
+ */
+pc_status pc_system_inverse_dynamics(const pc_system *system,
+                                     double t,
+                                     const double *y,
+                                     size_t y_length,
+                                     const double *accelerations,
+                                     size_t accelerations_length,
+                                     double *tau,
+                                     size_t tau_length,
+                                     pc_error **error);
 
 /**
  * Solves M w = v at (t, y), with M as in pc_system_mass_matrix, and writes w = M⁻¹ v; both have k
