@@ -171,7 +171,8 @@ pub unsafe extern "C" fn pc_model_add_input_curve_file(
     unsafe { draft(model, error, "pc_model_add_input_curve_file", write) }
 }
 
-/// The file of an input, by its path from the root: the text of a model has no place. With its columns.
+/// The file of an input, by its path from the root: the text of a model has no place. With its
+/// columns.
 fn write_file(
     draft: &mut Draft,
     name: &str,

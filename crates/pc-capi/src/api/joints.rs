@@ -220,8 +220,8 @@ pub unsafe extern "C" fn pc_model_set_joint_damping(
     unsafe { draft(model, error, "pc_model_set_joint_damping", write) }
 }
 
-/// Sets the dry friction F of a joint with one coordinate x: the force -F sign(x'), and any force up
-/// to F where the joint is at rest.
+/// Sets the dry friction F of a joint with one coordinate x: the force -F sign(x'), and any force
+/// up to F where the joint is at rest.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_joint_friction(
     model: *mut pc_model,
@@ -268,8 +268,9 @@ pub unsafe extern "C" fn pc_model_set_joint_limits(
 }
 
 /// Sets rigid stops at the ends of the way of a joint with one coordinate x: there x' becomes
-/// -restitution x', and all velocities change by the impulse along the joint. A joint that is pushed
-/// against a stop comes to rest there. It cannot be combined with pc_model_set_joint_limits.
+/// -restitution x', and all velocities change by the impulse along the joint. A joint that is
+/// pushed against a stop comes to rest there. It cannot be combined with
+/// pc_model_set_joint_limits.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_joint_restitution(
     model: *mut pc_model,
@@ -291,8 +292,8 @@ pub unsafe extern "C" fn pc_model_set_joint_restitution(
     unsafe { draft(model, error, "pc_model_set_joint_restitution", write) }
 }
 
-/// Sets the stiction of a joint with friction: at rest, friction holds it up to this force, which is
-/// at least that of pc_model_set_joint_friction.
+/// Sets the stiction of a joint with friction: at rest, friction holds it up to this force, which
+/// is at least that of pc_model_set_joint_friction.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_joint_stiction(
     model: *mut pc_model,
@@ -472,8 +473,9 @@ pub unsafe extern "C" fn pc_model_set_loop_length(
     unsafe { draft(model, error, "pc_model_set_loop_length", write) }
 }
 
-/// Adds a contact of a body with a plane. The shape is disc, sphere or ellipsoid, and the motion rolls
-/// or slides. pc_model_set_contact sets the size of the shape, and what else the text may say.
+/// Adds a contact of a body with a plane. The shape is disc, sphere or ellipsoid, and the motion
+/// rolls or slides. pc_model_set_contact sets the size of the shape, and what else the text may
+/// say.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_contact(
     model: *mut pc_model,
@@ -497,8 +499,9 @@ pub unsafe extern "C" fn pc_model_add_contact(
     unsafe { draft(model, error, "pc_model_add_contact", write) }
 }
 
-/// Sets an entry of a contact: radius, with 1 value; axis, semi_axes, at, normal or through, with 3;
-/// attitude, with 9; keeps, with the value true. The values are expressions, those of an axis numbers.
+/// Sets an entry of a contact: radius, with 1 value; axis, semi_axes, at, normal or through, with
+/// 3; attitude, with 9; keeps, with the value true. The values are expressions, those of an axis
+/// numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_contact(
     model: *mut pc_model,
@@ -520,7 +523,8 @@ pub unsafe extern "C" fn pc_model_set_contact(
     unsafe { draft(model, error, "pc_model_set_contact", write) }
 }
 
-/// The values of an entry as TOML: numbers and `true` as such, if they are expected, and all else as texts.
+/// The values of an entry as TOML: numbers and `true` as such, if they are expected, and all else
+/// as texts.
 fn entry_of_contact(entry: &str, values: &[&str]) -> String {
     let parsed = |text: &&str| text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
     let numbers: Option<Vec<f64>> = values.iter().map(parsed).collect();

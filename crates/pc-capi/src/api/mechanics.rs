@@ -103,11 +103,12 @@ pub unsafe extern "C" fn pc_system_right_hand_side(
     unsafe { inside(system, error, compute) }
 }
 
-/// Writes the generalised forces tau = M η̇ + h - Q that have to be added to the forces Q of the model
-/// for the accelerations η̇ at (t, y): inverse dynamics. Both lists have k numbers, with k as in
-/// pc_system_mass_matrix; null accelerations stand for zeros, so that tau is what the motion itself
-/// requires, and in a state at rest what holds the system there. The forces of constraints that
-/// multipliers hold are part of tau. For bodies on joints tau is found from body to body. The first call derives equations, as pc_system_new does.
+/// Writes the generalised forces tau = M η̇ + h - Q that have to be added to the forces Q of the
+/// model for the accelerations η̇ at (t, y): inverse dynamics. Both lists have k numbers, with k
+/// as in pc_system_mass_matrix; null accelerations stand for zeros, so that tau is what the motion
+/// itself requires, and in a state at rest what holds the system there. The forces of constraints
+/// that multipliers hold are part of tau. For bodies on joints tau is found from body to body. The
+/// first call derives equations, as pc_system_new does.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_inverse_dynamics(
     system: *const pc_system,

@@ -58,7 +58,10 @@ impl Handles {
                 }
                 ModelCall::File(path) => {
                     let path = CString::new(path.as_slice()).unwrap();
-                    self.made(|place, error| pc_model_from_file(path.as_ptr(), place, error))
+                    self.made(|place, error| match path.count_bytes() % 2 {
+                        0 => pc_model_from_file(path.as_ptr(), place, error),
+                        _ => pc_model_from_robot(path.as_ptr(), 0, 1, place, error),
+                    })
                 }
                 ModelCall::Clone => self.made(|place, error| pc_model_clone(model, place, error)),
                 ModelCall::Say(function, [a, b, z], x) => {

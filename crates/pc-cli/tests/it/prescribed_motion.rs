@@ -110,7 +110,7 @@ fn rates_of_corners_are_refused() {
     };
     let said = |table: &str| {
         let (output, _) = pc(&text(table), &[]);
-        assert_eq!(output.status.code(), Some(1), "{table}");
+        assert_eq!(output.status.code(), Some(3), "{table}");
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         said[said.find("m.toml").unwrap()..].to_owned()
     };

@@ -72,15 +72,19 @@ pub enum TableError {
         /// The later of the two times.
         time: f64,
     },
-    /// Rates without interpolation that uses them, or too few of them.
-    #[error(
-        "{what} are for the interpolation {by}, and there are as many of them as times: {times}, not {found}"
-    )]
-    Rates {
+    /// Rates without interpolation that uses them.
+    #[error("{what} are used by the interpolation {by} alone")]
+    Unused {
         /// Which rates.
         what: &'static str,
         /// The interpolations that use them.
         by: &'static str,
+    },
+    /// Different numbers of times and rates.
+    #[error("a table needs as many {what} as times, but has {times} times and {found} {what}")]
+    Rates {
+        /// Which rates.
+        what: &'static str,
         /// Number of times.
         times: usize,
         /// Number of rates.
@@ -131,7 +135,7 @@ impl Table {
     /// ```
     ///
     /// # Errors
-    /// As for [`new`](Table::new); [`TableError::Rates`] and [`TableError::RatesMissing`] where the interpolation does not
+    /// As for [`new`](Table::new); [`TableError::Unused`], [`TableError::Rates`] and [`TableError::RatesMissing`] where the interpolation does not
     /// use the rates, or needs those that are missing.
     pub fn with_rates(
         times: Vec<f64>,
@@ -279,8 +283,11 @@ fn curves(
     ];
     for (what, by, used, list) in listed {
         if let Some(list) = list {
-            if !used || list.len() != times.len() {
-                return Err(TableError::Rates { what, by, times: times.len(), found: list.len() });
+            if !used {
+                return Err(TableError::Unused { what, by });
+            }
+            if list.len() != times.len() {
+                return Err(TableError::Rates { what, times: times.len(), found: list.len() });
             }
             check_finite(times, list)?;
         }
@@ -364,12 +371,11 @@ mod tests {
             Table::with_rates(vec![0.0, 1.0], vec![0.0, 1.0], &known, interpolation).map(|_| ())
         };
         let rates = |count| KnownRates { rates: Some(vec![0.0; count]), accelerations: None };
-        let refused = |found| {
-            let by = "\"cubic\" or \"quintic\"";
-            Err(TableError::Rates { what: "rates", by, times: 2, found })
-        };
-        assert_eq!(table(rates(2), Interpolation::Linear), refused(2));
-        assert_eq!(table(rates(3), Interpolation::Cubic), refused(3));
+        let by = "\"cubic\" or \"quintic\"";
+        let unused = Err(TableError::Unused { what: "rates", by });
+        assert_eq!(table(rates(2), Interpolation::Linear), unused);
+        let too_many = Err(TableError::Rates { what: "rates", times: 2, found: 3 });
+        assert_eq!(table(rates(3), Interpolation::Cubic), too_many);
         assert_eq!(table(rates(2), Interpolation::Quintic), Err(TableError::RatesMissing));
         assert_eq!(table(rates(2), Interpolation::Cubic), Ok(()));
     }

@@ -11,6 +11,8 @@ use crate::diagnostics::source::Place;
 use crate::document::{Document, Input, InputValue, Located, Name, TableFile, read_file_bounded};
 
 const LISTS: &str = "give as many values as times, at least two, with increasing times";
+const RATES: &str =
+    "`rates` go with `interpolation = \"cubic\"`, `rates` and `accelerations` with \"quintic\"";
 const COLUMNS: &str = "a file has a line of names, then lines of numbers, with commas between them; the times are in its \
                        column `t`, else in the first, or where `time = \"…\"` says";
 
@@ -23,7 +25,10 @@ pub(crate) fn of(document: &Document, input: &Input) -> Result<Option<Table>, Mo
         InputValue::Constant(_) | InputValue::RateOf(_) => Ok(None),
         InputValue::Lists { place, times, values, known, interpolation } => {
             let table = Table::with_rates(times.clone(), values.clone(), known, *interpolation);
-            table.map(Some).map_err(|error| fault(document, place, error.to_string(), LISTS))
+            table.map(Some).map_err(|error| {
+                let of_rates = matches!(error, TableError::Unused { .. } | TableError::RatesMissing);
+                fault(document, place, error.to_string(), if of_rates { RATES } else { LISTS })
+            })
         }
         InputValue::File(file) => from_file(document, file).map(Some),
     }

@@ -352,7 +352,14 @@ impl<'g, 'd> Scope<'g, 'd> {
                 | Stage::Constraint
                 | Stage::Drawing => match self.rate_of_input(name) {
                     Some(_) => Ok(self.graph.symbol(name)),
-                    None => refuse(self),
+                    None => {
+                        let fault = |_| MeaningError::NotHere {
+                            name: name.to_owned(),
+                            place: stage.place(),
+                            allowed: "parameters, coordinates, t, and inputs with cubic or quintic tables",
+                        };
+                        Err(self.error(expression, span, fault))
+                    }
                 },
                 Stage::Rate
                 | Stage::Gravity

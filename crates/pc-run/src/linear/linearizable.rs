@@ -4,6 +4,7 @@ use std::convert::Infallible;
 
 use pc_analysis::{AnalysisError, Conserved, Integrals, Linearization, Stability};
 use pc_mech::{Equations, Graph, MechError, Neighbourhood};
+use pc_model::document::{Input, InputValue};
 use pc_model::{Assembly, Model, Variables};
 use pc_nonholo::NonholoError;
 use pc_print::{LinearModel, integrals_of};
@@ -22,6 +23,18 @@ pub(crate) struct Linearizable<'g> {
     pub(crate) linear: LinearModel<'g>,
 }
 
+/// The names of the inputs; of the rates of tables, those on which the equations or what is observed depend.
+fn inputs_of<'m>(model: &'m Model, equations: &Equations<'_>) -> Vec<&'m str> {
+    let (system, graph) = (equations.system(), equations.system().graph());
+    let observed = system.integrals().iter().chain(system.outputs()).map(|(_, value)| *value);
+    let values: Vec<_> = equations.inverse_dynamics().into_iter().chain(observed).collect();
+    let counts = |input: &&Input| {
+        let symbol = || graph.symbol(&input.name.text);
+        !matches!(input.value, InputValue::RateOf(_)) || values.iter().any(|value| value.depends_on(symbol()))
+    };
+    model.document().inputs.iter().filter(counts).map(|input| input.name.text.as_str()).collect()
+}
+
 impl<'g> Linearizable<'g> {
     /// # Errors
     /// [`RunError`] at the place in the file that causes the error.
@@ -29,8 +42,7 @@ impl<'g> Linearizable<'g> {
         model.require_values()?;
         let assembly = model.assemble(graph)?;
         let equations = assembly.equations()?;
-        let inputs: Vec<&str> =
-            model.document().inputs.iter().map(|input| input.name.text.as_str()).collect();
+        let inputs = inputs_of(model, &equations);
         let linear = assembly.stage("the linearization", || {
             let linear = LinearModel::of(&assembly, &equations, || integrals(&assembly, &equations), &inputs);
             linear.map_err(|error| placed(&assembly, error, true))
