@@ -1212,8 +1212,8 @@ pc_status pc_model_set_joint_damping(pc_model *model,
                                      pc_error **error);
 
 /**
- * Sets the dry friction F of a joint with one coordinate x: the force -F sign(x'), and any force up
- * to F where the joint is at rest.
+ * Sets the dry friction F of a joint with one coordinate x: the force -F sign(x'), and any force
+ * up to F where the joint is at rest.
  */
 pc_status pc_model_set_joint_friction(pc_model *model,
                                       const char *body,
@@ -1234,8 +1234,9 @@ pc_status pc_model_set_joint_limits(pc_model *model,
 
 /**
  * Sets rigid stops at the ends of the way of a joint with one coordinate x: there x' becomes
- * -restitution x', and all velocities change by the impulse along the joint. A joint that is pushed
- * against a stop comes to rest there. It cannot be combined with pc_model_set_joint_limits.
+ * -restitution x', and all velocities change by the impulse along the joint. A joint that is
+ * pushed against a stop comes to rest there. It cannot be combined with
+ * pc_model_set_joint_limits.
  */
 pc_status pc_model_set_joint_restitution(pc_model *model,
                                          const char *body,
@@ -1245,8 +1246,8 @@ pc_status pc_model_set_joint_restitution(pc_model *model,
                                          pc_error **error);
 
 /**
- * Sets the stiction of a joint with friction: at rest, friction holds it up to this force, which is
- * at least that of pc_model_set_joint_friction.
+ * Sets the stiction of a joint with friction: at rest, friction holds it up to this force, which
+ * is at least that of pc_model_set_joint_friction.
  */
 pc_status pc_model_set_joint_stiction(pc_model *model,
                                       const char *body,
@@ -1337,8 +1338,9 @@ pc_status pc_model_set_loop_length(pc_model *model,
                                    pc_error **error);
 
 /**
- * Adds a contact of a body with a plane. The shape is disc, sphere or ellipsoid, and the motion rolls
- * or slides. pc_model_set_contact sets the size of the shape, and what else the text may say.
+ * Adds a contact of a body with a plane. The shape is disc, sphere or ellipsoid, and the motion
+ * rolls or slides. pc_model_set_contact sets the size of the shape, and what else the text may
+ * say.
  */
 pc_status pc_model_add_contact(pc_model *model,
                                const char *name,
@@ -1348,8 +1350,9 @@ pc_status pc_model_add_contact(pc_model *model,
                                pc_error **error);
 
 /**
- * Sets an entry of a contact: radius, with 1 value; axis, semi_axes, at, normal or through, with 3;
- * attitude, with 9; keeps, with the value true. The values are expressions, those of an axis numbers.
+ * Sets an entry of a contact: radius, with 1 value; axis, semi_axes, at, normal or through, with
+ * 3; attitude, with 9; keeps, with the value true. The values are expressions, those of an axis
+ * numbers.
  */
 pc_status pc_model_set_contact(pc_model *model,
                                const char *name,
@@ -1995,11 +1998,12 @@ pc_status pc_system_right_hand_side(const pc_system *system,
                                     pc_error **error);
 
 /**
- * Writes the generalised forces tau = M η̇ + h - Q that have to be added to the forces Q of the model
- * for the accelerations η̇ at (t, y): inverse dynamics. Both lists have k numbers, with k as in
- * pc_system_mass_matrix; null accelerations stand for zeros, so that tau is what the motion itself
- * requires, and in a state at rest what holds the system there. The forces of constraints that
- * multipliers hold are part of tau. For bodies on joints tau is found from body to body. The first call derives equations, as pc_system_new does.
+ * Writes the generalised forces tau = M η̇ + h - Q that have to be added to the forces Q of the
+ * model for the accelerations η̇ at (t, y): inverse dynamics. Both lists have k numbers, with k
+ * as in pc_system_mass_matrix; null accelerations stand for zeros, so that tau is what the motion
+ * itself requires, and in a state at rest what holds the system there. The forces of constraints
+ * that multipliers hold are part of tau. For bodies on joints tau is found from body to body. The
+ * first call derives equations, as pc_system_new does.
  */
 pc_status pc_system_inverse_dynamics(const pc_system *system,
                                      double t,
