@@ -4,12 +4,13 @@
 //! TOML becomes a [`Document`]. Read the result first: `expression`, whose parts `text_map` locates in the file, and
 //! `contents`, section by section; `run_settings` contains the defaults of a run. Then see how the text is read: `reading` reads bytes,
 //! `syntax` parses TOML, `reader` gives typed access to its values, and `hidden` lists characters that labels must not contain.
-//! `sections`, `bodies`, `tree` with its `joints` and their `inertia`, `loops`, `contacts`, `inputs`, `functions`, `draw` and `simulation`, with its
+//! `sections`, `bodies`, `tree` with its `joints` and their `inertia`, `loops`, `contacts` made of a `contact` each, `inputs`, `functions`, `draw` and `simulation`, with its
 //! `tolerance`s, read the sections; `hanging` declares the coordinates of joints, `checks` tests conditions between the sections, and
 //! `parse` combines all of these. `schema` describes the format for editors.
 
 pub(crate) mod bodies;
 pub(crate) mod checks;
+pub(crate) mod contact;
 pub(crate) mod contacts;
 pub(crate) mod contents;
 pub(crate) mod draw;
@@ -34,7 +35,7 @@ pub(crate) mod text_map;
 pub(crate) mod tolerance;
 pub(crate) mod tree;
 
-pub use contacts::{Contact, ContactShape};
+pub use contact::{Contact, ContactShape};
 pub use contents::{
     Algebra, AlgebraDefinition, Body, Bracket, Constraint, DeclaredKind, Document, Event, GivenFunction,
     Gravity, HamiltonJacobi, Heading, Input, InputValue, Lagrangian, Orientation, QuasiVelocity, State,

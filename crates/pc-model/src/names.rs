@@ -4,7 +4,7 @@
 //! expression may contain, depending on its place in the text. `scope` gives the meaning of a name in that
 //! place, `functions` and `declared` the meaning of a function, and `rates` the meaning of derivatives with respect to time;
 //! `definitions` resolves definitions in their order; `points` expresses points of bodies with joints as
-//! functions of the coordinates, `contacts` where a body touches a plane, and `momenta` what bodies have as they move: mass
+//! functions of the coordinates, `contacts` where a body touches a plane, and `momenta` what bodies that are `moving` have: mass
 //! centre, momentum, energy.
 
 pub(crate) mod contacts;
@@ -12,6 +12,7 @@ pub(crate) mod declared;
 pub(crate) mod definitions;
 pub(crate) mod functions;
 pub(crate) mod momenta;
+pub(crate) mod moving;
 pub(crate) mod points;
 pub(crate) mod rates;
 pub(crate) mod scope;

@@ -5,7 +5,7 @@ use pc_expr::Direction;
 use pc_mech::{Interpolation, KnownRates};
 
 use crate::diagnostics::source::{Place, Source};
-use crate::document::contacts::Contact;
+use crate::document::contact::Contact;
 use crate::document::draw::Draw;
 use crate::document::expression::{Expression, Located, Name, NamedExpression};
 use crate::document::inertia::Inertia;

@@ -8,8 +8,6 @@
 //! √(a²n_1² + b²n_2² + c²n_3²) for an ellipsoid along its own axes. The material point of the body at p has the velocity
 //! u = v + ω × (p − c), of which n·u is the rate of g.
 
-use std::collections::HashMap;
-
 use pc_mech::{Expr, Matrix, Tree};
 
 use crate::diagnostics::error::ModelError;
@@ -196,9 +194,6 @@ impl<'g> Scope<'g, '_> {
         self.coordinates().into_iter().zip(self.velocities()).chain(self.graph.in_time(self.time)).collect()
     }
 }
-
-/// The values of contacts, by their numbers; none for one that is being found.
-pub(super) type Contacts<'g> = HashMap<usize, Option<[Expr<'g>; 6]>>;
 
 /// Two unit vectors along the plane: the projection of a fixed axis, and n × this.
 fn tangents<'g>(axis: usize, normal: &Vector<'g>) -> [Vector<'g>; 2] {

@@ -11,26 +11,12 @@ use pc_mech::{Expr, Tree, TreeBody};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::document::{self, Body, Expression, Inertia, Orientation};
+use crate::names::moving::Moving;
 use crate::names::points::hung;
 use crate::names::scope::Scope;
 use crate::names::stage::Stage;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
-
-/// A body as it moves, in terms of coordinates, x', quasi-velocities and t; vectors are along fixed axes.
-#[derive(Clone)]
-pub(crate) struct Moving<'g> {
-    name: String,
-    mass: Expr<'g>,
-    centre: [Expr<'g>; 3],
-    /// m v
-    momentum: [Expr<'g>; 3],
-    /// I ω; none if the directions of the axes of ω are not known.
-    spin: Option<[Expr<'g>; 3]>,
-    kinetic: Expr<'g>,
-    /// −m g·r, less the force function of the force on the body.
-    potential: Expr<'g>,
-}
 
 /// What a name means: a component of a vector of one body or of all, or an energy of one body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -12,9 +12,8 @@ use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::source::{Place, Source};
 use crate::document::{Body, Document, Expression, InputValue, NamedExpression, TreeBody};
-use crate::names::contacts::Contacts;
 use crate::names::functions::call;
-use crate::names::momenta::Moving;
+use crate::names::moving::Moving;
 use crate::names::stage::Stage;
 
 /// A part of the model as written, with its expression; these parts are searched when a value is not a
@@ -67,8 +66,8 @@ pub(crate) struct Scope<'g, 'd> {
     pub(crate) written: Vec<Written<'g>>,
     /// The arguments of the function whose value is being resolved.
     pub(super) arguments: Vec<(&'d str, Expr<'g>)>,
-    /// The contacts used so far.
-    pub(super) contacts: Contacts<'g>,
+    /// The values of the contacts used so far, by their numbers; none for one that is being found.
+    pub(super) contacts: HashMap<usize, Option<[Expr<'g>; 6]>>,
     /// The components of points, which are all computed when one of them is used.
     pub(super) points: Option<HashMap<String, Expr<'g>>>,
     /// The motions of all bodies, which are computed when one of them is used.
@@ -115,7 +114,7 @@ impl<'g, 'd> Scope<'g, 'd> {
             context: Context::default(),
             written: Vec::new(),
             arguments: Vec::new(),
-            contacts: Contacts::default(),
+            contacts: HashMap::new(),
             points: None,
             moving: None,
             force_functions: Vec::new(),

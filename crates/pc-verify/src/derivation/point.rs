@@ -8,9 +8,8 @@ use crate::error::{Irregular, Unable};
 use crate::numbers::number::Number;
 use crate::numbers::rounding::Rounding;
 use crate::text::body::{Body, Turning};
-use crate::text::momentum::OfBody;
 use crate::text::resultant::Resultants;
-use crate::text::term::{Function, Term};
+use crate::text::term::{Function, OfBody, Term};
 use crate::text::text::{Text, Velocities};
 
 /// The largest number of definitions that are evaluated by nested calls; if there are more, the earlier

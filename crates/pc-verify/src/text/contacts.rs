@@ -11,8 +11,8 @@
 use pc_model::document::{Contact, ContactShape, Document, Expression, Orientation};
 
 use crate::error::Unable;
-use crate::text::term::{Function, Names, Term};
-use crate::text::tree::Tree;
+use crate::text::names::Names;
+use crate::text::term::{Function, Term};
 
 /// A contact of a body whose place and attitude are these terms.
 pub(crate) struct Touching<'a> {
@@ -24,13 +24,17 @@ pub(crate) struct Touching<'a> {
 }
 
 impl<'a> Touching<'a> {
-    /// The contact of a body on a joint; `None` for one that is placed.
-    pub(crate) fn on_joint(contact: &'a Contact, tree: &Tree<'_>, names: &'a Names) -> Option<Touching<'a>> {
-        let (rotation, place) = tree.placed(&contact.body.value)?;
-        Some(Touching { contact, names, place, rotation })
+    /// The contact of a body that has this rotation and this place.
+    pub(crate) fn of(
+        contact: &'a Contact,
+        names: &'a Names,
+        (rotation, place): (Vec<Term>, Vec<Term>),
+    ) -> Touching<'a> {
+        Touching { contact, names, place, rotation }
     }
 
-    fn placed(
+    /// The contact of a body with a position, and the angular velocity of this if it is given.
+    pub(super) fn placed(
         contact: &'a Contact,
         document: &Document,
         names: &'a Names,
@@ -110,7 +114,7 @@ impl<'a> Touching<'a> {
 
     /// The components of the contact, whose point of contact is `point`; `omega` is the angular velocity along the axes
     /// of the rotation, if it is given.
-    fn components(&self, point: Vec<Term>, omega: Option<&[Term]>) -> Result<Vec<Term>, Unable> {
+    pub(super) fn components(&self, point: Vec<Term>, omega: Option<&[Term]>) -> Result<Vec<Term>, Unable> {
         let n = self.normal()?;
         let through = match &self.contact.through {
             Some(through) => {
@@ -150,26 +154,6 @@ impl<'a> Touching<'a> {
     fn arm(&self, point: &[Term], from: &[Term]) -> Vec<Term> {
         point.iter().zip(from).map(|(p, c)| difference(p.clone(), c.clone())).collect()
     }
-}
-
-/// The names of the components of contacts, with their terms.
-pub(crate) fn components(
-    document: &Document,
-    tree: &Tree<'_>,
-    names: &Names,
-) -> Result<Vec<(String, Term)>, Unable> {
-    let mut all = Vec::new();
-    for (number, contact) in document.contacts.iter().enumerate() {
-        let values = match Touching::on_joint(contact, tree, names) {
-            Some(touching) => touching.components(tree.point_of_contact(number), None)?,
-            None => {
-                let (touching, omega) = Touching::placed(contact, document, names)?;
-                touching.components(touching.point()?, omega.as_deref())?
-            }
-        };
-        all.extend(contact.components.iter().map(|name| name.text.clone()).zip(values));
-    }
-    Ok(all)
 }
 
 fn is(term: &Term, value: f64) -> bool {

@@ -1,18 +1,6 @@
 //! What bodies have as they move, as terms: mass centres, momenta, energies, and the zero-moment point.
 
-use crate::text::term::Term;
-
-/// A quantity of one body; vectors are along fixed axes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum OfBody {
-    Mass,
-    /// A component of its position.
-    Place(usize),
-    /// A component of the angular momentum about its position.
-    Spin(usize),
-    Kinetic,
-    Potential,
-}
+use crate::text::term::{OfBody, Term};
 
 /// A quantity of the body with this number.
 fn of(body: usize, quantity: OfBody) -> Term {

@@ -9,8 +9,9 @@ use pc_model::document::{AlgebraDefinition, Contact, Document, Expression, Named
 
 use crate::error::Unable;
 use crate::text::body::{Body, Turning, matrix};
-use crate::text::contacts;
-use crate::text::term::{Declared, Names, Term};
+use crate::text::contacts_by_name;
+use crate::text::names::{Declared, Names};
+use crate::text::term::Term;
 use crate::text::tree::{Stop, Tree};
 
 /// Everything in a model that determines its motion.
@@ -100,7 +101,7 @@ impl Text {
         };
         let gravity = document.gravity.iter().flat_map(|gravity| &gravity.acceleration);
         names.gravity = gravity.map(|part| names.resolve(&part.ast)).collect::<Result<_, _>>()?;
-        names.contacts = contacts::components(document, &tree, &names)?;
+        names.contacts = contacts_by_name::components(document, &tree, &names)?;
         let term = |expression: &Expression| names.resolve(&expression.ast);
         let terms = |list: &[Expression]| list.iter().map(term).collect::<Result<Vec<Term>, Unable>>();
         let energy = document.lagrangian.as_ref();

@@ -15,7 +15,8 @@ use pc_model::document::{
 use crate::error::Unable;
 use crate::text::body::{Body, Turning, matrix};
 use crate::text::contacts::Touching;
-use crate::text::term::{Function, Names, Term};
+use crate::text::names::Names;
+use crate::text::term::{Function, Term};
 
 /// The terms of the rotors, springs and dampers of joints.
 #[derive(Default)]
@@ -180,7 +181,7 @@ impl<'a> Tree<'a> {
             all.extend(added(&origin, &turned(&rotation, &vector(point.at.as_ref(), names)?)));
         }
         for (_, contact) in self.contacts() {
-            let touching = Touching::on_joint(contact, self, names);
+            let touching = self.placed(&contact.body.value).map(|at| Touching::of(contact, names, at));
             all.extend(touching.map_or(Ok(Vec::new()), |touching| touching.point())?);
         }
         all.extend(written(&self.written[self.constant..])?);
