@@ -90,6 +90,13 @@ public:
         return say(pc_model_add_input_file, name.c_str(), path.c_str(), column.c_str(), nullptr,
                    interpolation.c_str());
     }
+    /// An input by the columns of values, rates and, unless empty, accelerations of a file.
+    model &input_curve_file(const std::string &name, const std::string &path, const std::string &column,
+                            const std::string &rate, const std::string &acceleration = "")
+    {
+        return say(pc_model_add_input_curve_file, name.c_str(), path.c_str(), column.c_str(), rate.c_str(),
+                   acceleration.empty() ? nullptr : acceleration.c_str(), nullptr);
+    }
     model &definition(const std::string &name, const std::string &expression)
     {
         return say(pc_model_add_definition, name.c_str(), expression.c_str());
