@@ -169,7 +169,7 @@ class System(_native.System):
         --------
         >>> from chetaev import Model
         >>> system = Model.builtin("furuta-pendulum").system()
-        >>> rates = system.rhs(0.0, system.y0)
+        >>> rates = system(0.0, system.y0)
         >>> forces = system.inverse_dynamics(0.0, system.y0, rates[2:])
         >>> bool(abs(forces).max() < 1e-12)
         True
