@@ -114,7 +114,14 @@ class System:
         start: Sequence[float] | None,
         estimate: bool,
         verify: bool | None,
-        inputs: Sequence[tuple[str, float | tuple[list[float], list[float], str]]],
+        inputs: Sequence[
+            tuple[
+                str,
+                float
+                | tuple[list[float], list[float], str]
+                | tuple[list[float], list[float], list[float], list[float] | None],
+            ]
+        ],
     ) -> _Outcome: ...
     def _stepping(self, wished: dict[str, Any]) -> Stepper: ...
     def _dense(self, end: float, start: Sequence[float], wished: dict[str, Any]) -> DenseCore: ...
