@@ -280,5 +280,5 @@ pub use transform::velocities::VelocityTransform;
 pub use tree::body::TreeBody;
 pub use tree::joint::Joint;
 pub use tree::kinematics::{JointMotion, Motions};
-pub use tree::reactions::JointReaction;
+pub use tree::reactions::{JointReaction, PointLoad};
 pub use tree::tree::Tree;

@@ -22,6 +22,20 @@ pub struct JointReaction<'g> {
     force_in_world: [Expr<'g>; 3],
 }
 
+/// A force and a torque on a body of a tree in addition to those of joints, weight and its own force and torque, such as
+/// those of a constraint; along the axes of the world.
+#[derive(Clone, Debug)]
+pub struct PointLoad<'g> {
+    /// The name of the body.
+    pub body: String,
+    /// The point at which the force acts, along the axes of the body from its origin.
+    pub point: [Expr<'g>; 3],
+    /// The force.
+    pub force: [Expr<'g>; 3],
+    /// The torque.
+    pub torque: [Expr<'g>; 3],
+}
+
 impl<'g> JointReaction<'g> {
     /// The name of the body.
     pub fn body(&self) -> &str {
@@ -49,8 +63,13 @@ impl<'g> System<'g> {
     /// equations from the tips to the root), in the order of declaration; none for a system that is not a tree. If
     /// added as [outputs](System::with_more_outputs), they are observed along a motion.
     pub fn joint_reactions(&self) -> Vec<JointReaction<'g>> {
+        self.joint_reactions_under(&[])
+    }
+
+    /// The same with further forces and torques on bodies; those on bodies that are not of the tree are ignored.
+    pub fn joint_reactions_under(&self, loads: &[PointLoad<'g>]) -> Vec<JointReaction<'g>> {
         let Some(tree) = &self.tree else { return Vec::new() };
-        tree.reactions(self)
+        tree.reactions(self, loads)
     }
 
     /// The k generalised forces on the joints of the [tree](System::tree): Q + X U without the forces and
@@ -70,7 +89,7 @@ impl<'g> TreeSystem<'g> {
         (0..slopes.len()).map(|s| system.forces[s] + slopes[s] - loads[s]).collect()
     }
 
-    fn reactions(&self, system: &System<'g>) -> Vec<JointReaction<'g>> {
+    fn reactions(&self, system: &System<'g>, loads: &[PointLoad<'g>]) -> Vec<JointReaction<'g>> {
         let graph = self.tree.graph;
         let dynamics = self.dynamics(&system.frame, &system.forces);
         let unknowns = self.by_link(&system.accelerations());
@@ -86,6 +105,18 @@ impl<'g> TreeSystem<'g> {
             for i in 0..3 {
                 borne[i] = graph.keep(borne[i] - torque[i] - arm[i]);
                 borne[i + 3] = graph.keep(borne[i + 3] - force[i]);
+            }
+        }
+        for load in loads {
+            let Some(body) = self.tree.place_of(&load.body) else { continue };
+            let stand = &self.tree.stands[body];
+            let rotation = motions.of_stand(stand).rotation;
+            let force = apply_transpose(graph, &rotation, &load.force);
+            let torque = apply_transpose(graph, &rotation, &load.torque);
+            let arm = cross(&stand.point(graph, &load.point), &force);
+            for i in 0..3 {
+                borne[body][i] = graph.keep(borne[body][i] - torque[i] - arm[i]);
+                borne[body][i + 3] = graph.keep(borne[body][i + 3] - force[i]);
             }
         }
         // From the tips to the root.

@@ -224,6 +224,11 @@ impl<'g> Assembler<'g, '_> {
         let written_start = self.model.projects_start().then(|| start.clone());
         let constraints =
             self.treatment(&system, &constraints, &x_dot, &values, (t_start, &mut start), prescribed)?;
+        if !constraints.redundant().is_empty() {
+            self.refuse_joint_reactions(
+                "a constraint follows from others, so that these forces are not unique",
+            )?;
+        }
         let independent = self.model.independent().iter().map(|name| self.graph.symbol(name)).collect();
         let constraints = constraints.with_independent(independent);
         let mut events =

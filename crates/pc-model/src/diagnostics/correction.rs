@@ -95,7 +95,9 @@ impl MeaningError {
             ),
             MeaningError::NotNonlinear { .. } => "leave out its kind".into(),
             MeaningError::JointForceUnknown { .. } => {
-                "forces of joints are outputs of models whose bodies all hang on joints, without constraints".into()
+                "forces of joints are outputs of models whose bodies all hang on joints; constraints are then loops, or relations \
+                 between components of points, none of which follows from others"
+                    .into()
             }
             MeaningError::NoFixedAxes { .. } => {
                 "give the body a `rotation` in place of `angular_velocity`".into()

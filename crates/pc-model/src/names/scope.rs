@@ -134,6 +134,11 @@ impl<'g, 'd> Scope<'g, 'd> {
         Scope { others: others.to_vec(), ..self }
     }
 
+    /// The scope with other values for the components of points.
+    pub(crate) fn with_points(self, points: HashMap<String, Expr<'g>>) -> Scope<'g, 'd> {
+        Scope { points: Some(points), ..self }
+    }
+
     pub(crate) fn coordinates(&self) -> Vec<Expr<'g>> {
         self.document.coordinates.iter().map(|c| self.graph.symbol(&c.name.text)).collect()
     }

@@ -11,6 +11,7 @@ mod drawing;
 mod events;
 mod functions;
 mod inputs;
+mod joint_forces;
 mod jumps;
 mod kinematics;
 mod large;
