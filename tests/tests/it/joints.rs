@@ -3,6 +3,7 @@
 
 mod by_hand;
 mod contacts;
+mod friction_at_rest;
 mod library;
 mod loops;
 mod loops_by_joints;

@@ -21,9 +21,14 @@ use crate::names::stage::Stage;
 pub(crate) struct Written<'g> {
     pub(crate) value: Expr<'g>,
     pub(crate) place: Place,
+    /// As far as a message shows it.
     pub(crate) text: String,
     context: Context<'g>,
 }
+
+/// The characters of a part that a message may show. Each operand of a long sum is a part of its own, and the text up
+/// to it as long as the sum.
+const MOST_SHOWN: usize = 600;
 
 /// Where a part is written: in which definition, if any, and in which branches of `step`.
 #[derive(Clone, Default)]
@@ -190,8 +195,9 @@ impl<'g, 'd> Scope<'g, 'd> {
     }
 
     pub(super) fn note(&mut self, expression: &Expression, span: Span, value: Expr<'g>) {
-        let text = expression.text.get(span.start..span.end).unwrap_or_default().to_owned();
-        let context = self.context.clone();
+        let text = expression.text.get(span.start..span.end).unwrap_or_default();
+        let end = text.char_indices().nth(MOST_SHOWN).map_or(text.len(), |(end, _)| end);
+        let (text, context) = (text[..end].to_owned(), self.context.clone());
         self.written.push(Written { value, place: expression.place(span), text, context });
     }
 
