@@ -3,6 +3,7 @@
 
 mod by_hand;
 mod contacts;
+mod ground;
 mod library;
 mod loops;
 mod loops_by_joints;
