@@ -72,7 +72,7 @@ pub(crate) struct Scope<'g, 'd> {
     /// The arguments of the function whose value is being resolved.
     pub(super) arguments: Vec<(&'d str, Expr<'g>)>,
     /// The values of the contacts used so far, by their numbers; none for one that is being found.
-    pub(super) contacts: HashMap<usize, Option<[Expr<'g>; 6]>>,
+    pub(super) contacts: HashMap<usize, Option<Vec<Expr<'g>>>>,
     /// The components of points, which are all computed when one of them is used.
     pub(super) points: Option<HashMap<String, Expr<'g>>>,
     /// The motions of all bodies, which are computed when one of them is used.
@@ -320,7 +320,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         if name == "pi" {
             return Ok(std::f64::consts::PI.into());
         }
-        if stage == Stage::Body {
+        if matches!(stage, Stage::Body | Stage::Height) {
             return self.name_in_body(name).map_or_else(|| refuse(self), Ok);
         }
         let own = self.context.definition.map(|(_, own)| own);
@@ -349,7 +349,12 @@ impl<'g, 'd> Scope<'g, 'd> {
         }
         match stage {
             _ if is_input => match stage {
-                Stage::Parameter | Stage::Body | Stage::Start | Stage::Joint | Stage::Action => refuse(self),
+                Stage::Parameter
+                | Stage::Body
+                | Stage::Height
+                | Stage::Start
+                | Stage::Joint
+                | Stage::Action => refuse(self),
                 Stage::Definition
                 | Stage::Kinematics
                 | Stage::Position

@@ -581,7 +581,7 @@ friction = 0.1
         r#"m.toml:10:1: [contacts.c] friction: unknown entry `friction`
     friction = 0.1
     ^^^^^^^^
-  help: the entries here are body, shape, radius, axis, semi_axes, at, attitude, motion, normal, through, keeps"#,
+  help: the entries here are body, shape, radius, axis, semi_axes, at, attitude, motion, normal, through, height, keeps"#,
     ),
     (
         r#"body = "ball"
