@@ -2067,6 +2067,88 @@ pc_status pc_system_residual(const pc_system *system,
                              pc_error **error);
 
 /**
+ * Writes the Coriolis matrix C at (t, y), k × k and column-major, with k as in
+ * pc_system_mass_matrix: C η are the terms of M η̇ + h = Q that are quadratic in η,
+ *
+ *   C_sm = ½ (X_r M_sm + X_m M_sr − X_s M_rm + c_rm^l M_ls − c_rs^l M_lm − c_ms^l M_lr) η_r,
+ *
+ * with Christoffel's symbols where the c_rs^m vanish. dM/dt − 2C is skew-symmetric where neither
+ * M nor the frame depends on t; otherwise C + Cᵀ is the part of dM/dt that is linear in η. The
+ * first call derives C, as pc_system_new derives equations. Returns PC_INCONSISTENT_MODEL where M
+ * depends on η.
+ */
+pc_status pc_system_coriolis(const pc_system *system,
+                             double t,
+                             const double *y,
+                             size_t y_length,
+                             double *matrix,
+                             size_t length,
+                             pc_error **error);
+
+/**
+ * Writes the centroidal momentum matrix A at (t, y), column-major, with two more columns a and r:
+ * 6 × (k + 2), with k as in pc_system_mass_matrix. The momentum P of all bodies and their angular
+ * momentum L about their common mass centre, along fixed axes, are (P, L) = A η + a; a = 0 where
+ * nothing depends on t. Their rates are A η̇ + r. The first call derives them, as pc_system_new
+ * derives equations. Returns PC_UNSUPPORTED for a model without bodies, and PC_INVALID_MODEL for a
+ * body whose angular velocity is given without a rotation.
+ */
+pc_status pc_system_centroidal(const pc_system *system,
+                               double t,
+                               const double *y,
+                               size_t y_length,
+                               double *matrix,
+                               size_t length,
+                               pc_error **error);
+
+/**
+ * Writes the common mass centre of all bodies at (t, y), 3 numbers along fixed axes. The first
+ * call derives it, as pc_system_new derives equations. Returns PC_UNSUPPORTED for a model without
+ * bodies.
+ */
+pc_status pc_system_centre_of_mass(const pc_system *system,
+                                   double t,
+                                   const double *y,
+                                   size_t y_length,
+                                   double *centre,
+                                   size_t length,
+                                   pc_error **error);
+
+/**
+ * Writes the Jacobian J of the common mass centre of all bodies at (t, y), column-major, with two
+ * more columns a and r: 3 × (k + 2), with k as in pc_system_mass_matrix. Its velocity along fixed
+ * axes is J η + a, and its acceleration J η̇ + r. Otherwise like pc_system_centre_of_mass.
+ */
+pc_status pc_system_centre_of_mass_jacobian(const pc_system *system,
+                                            double t,
+                                            const double *y,
+                                            size_t y_length,
+                                            double *jacobian,
+                                            size_t length,
+                                            pc_error **error);
+
+/**
+ * Writes the Jacobian J of a point of a body at (t, y), column-major, with two more columns a and
+ * r: 6 × (k + 2), with k as in pc_system_mass_matrix. The velocity v of the point and the angular
+ * velocity ω of the body, along fixed axes, are (v, ω) = J η + a; a = 0 where nothing depends on
+ * t. Their rates are J η̇ + r. `body` is the name of a body, or of a point of [points]; `point`
+ * has 3 numbers, its position along the axes of the body from there, or is null for that place
+ * itself. The first call for a name derives J, as pc_system_new derives equations, for all
+ * points. Returns PC_NOT_FOUND where there is no such body, and PC_INVALID_MODEL where its angular
+ * velocity is given without a rotation.
+ */
+pc_status pc_system_body_jacobian(const pc_system *system,
+                                  double t,
+                                  const double *y,
+                                  size_t y_length,
+                                  const char *body,
+                                  const double *point,
+                                  size_t point_length,
+                                  double *jacobian,
+                                  size_t length,
+                                  pc_error **error);
+
+/**
  * Writes the value at (t, y) of the Poisson bracket (12), in coordinates and momenta, of two
  * functions,
  *

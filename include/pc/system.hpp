@@ -3,6 +3,7 @@
 #ifndef PC_SYSTEM_HPP
 #define PC_SYSTEM_HPP
 
+#include <array>
 #include <cstddef>
 #include <limits>
 #include <memory>
@@ -269,6 +270,31 @@ public:
     {
         return at(pc_system_inverse_dynamics, dim() - coordinate_count() - state_count(), t, y,
                   accelerations.data(), accelerations.size());
+    }
+    /// C, column-major: C η are the terms of M η̇ + h = Q that are quadratic in η.
+    vector coriolis(double t, view<const double> y)
+    {
+        const std::size_t k = dim() - coordinate_count() - state_count();
+        return at(pc_system_coriolis, k * k, t, y);
+    }
+    /// The centroidal momentum matrix A, a and r, column-major, 6 × (k + 2): (P, L) = A η + a, with the rates A η̇ + r.
+    vector centroidal(double t, view<const double> y)
+    {
+        return at(pc_system_centroidal, 6 * (dim() - coordinate_count() - state_count() + 2), t, y);
+    }
+    vector centre_of_mass(double t, view<const double> y) { return at(pc_system_centre_of_mass, 3, t, y); }
+    /// J, a and r, column-major, 3 × (k + 2): the mass centre has the velocity J η + a and the acceleration J η̇ + r.
+    vector centre_of_mass_jacobian(double t, view<const double> y)
+    {
+        return at(pc_system_centre_of_mass_jacobian, 3 * (dim() - coordinate_count() - state_count() + 2), t, y);
+    }
+    /// J, a and r, column-major, 6 × (k + 2), of a point given along the axes of a body, from its origin: (v, ω) = J η + a,
+    /// with the rates J η̇ + r.
+    vector body_jacobian(double t, view<const double> y, const std::string &body,
+                         const std::array<double, 3> &point = {})
+    {
+        return at(pc_system_body_jacobian, 6 * (dim() - coordinate_count() - state_count() + 2), t, y, body.c_str(),
+                  point.data(), point.size());
     }
     /// r of M η̇ = r
     vector right_hand_side(double t, view<const double> y)

@@ -3,7 +3,7 @@
 //! `ffi` checks the numbers and pointers of a call, the crates below compute the results, and
 //! `machinery` holds what outlives a call. Models: `model`, `builder`, `inputs`, `bodies`, `joints`
 //! (with `entry`), `action`, `settings`. Equations: `system`, `names`, `rates`, `mechanics`,
-//! `kernel`, `legendre`, `bracket`, `source`, `theory`, `verify`. Motions: `options`, `cancel`,
+//! `kinematics`, `kernel`, `legendre`, `bracket`, `source`, `theory`, `verify`. Motions: `options`, `cancel`,
 //! `solver`, `observe`, `events`, `occurrences`, `force`, `dense`, `checkpoint`, `statistics`,
 //! `ensemble`. The library: `version`.
 
@@ -21,6 +21,7 @@ pub(crate) mod force;
 pub(crate) mod inputs;
 pub(crate) mod joints;
 pub(crate) mod kernel;
+pub(crate) mod kinematics;
 pub(crate) mod legendre;
 pub(crate) mod mechanics;
 pub(crate) mod model;

@@ -35,6 +35,7 @@ pub use api::force::*;
 pub use api::inputs::*;
 pub use api::joints::*;
 pub use api::kernel::*;
+pub use api::kinematics::*;
 pub use api::legendre::*;
 pub use api::mechanics::*;
 pub use api::model::*;

@@ -3,8 +3,8 @@
 //! Read `exclusive` first, which guards values that one call at a time may use; then `controller`,
 //! the functions of the program that compute forces, and `motion_field`, the vector field that is
 //! integrated, with or without them; `lock_free_rhs`, f(t, y) computed by machine code alone for
-//! any number of threads, `own_rhs`, the same for one thread, and `mechanics`, the parts of the
-//! equations; `system` puts all these behind a handle. `engine` is an integration with a record of
+//! any number of threads, `own_rhs`, the same for one thread, `mechanics`, the parts of the
+//! equations, and `kinematics`, the Jacobians of bodies; `system` puts all these behind a handle. `engine` is an integration with a record of
 //! its events, `event_set` the events it follows. `draft` is a model built call by call.
 
 pub(crate) mod controller;
@@ -12,6 +12,7 @@ pub(crate) mod draft;
 pub(crate) mod engine;
 pub(crate) mod event_set;
 pub(crate) mod exclusive;
+pub(crate) mod kinematics;
 pub(crate) mod lock_free_rhs;
 pub(crate) mod mechanics;
 pub(crate) mod motion_field;

@@ -8,7 +8,8 @@
 //! constraints, `forced_motion` the motion under forces that the caller computes. `running_error` bounds rounding
 //! errors, `point` holds the arguments at which functions are evaluated, `chart` detects where quasi-velocities and
 //! velocities no longer determine each other, `change_point` detects where constraints lose rank; `mass_factors` solves
-//! equations with the matrix M alone, `inverse_dynamics` has the forces that accelerations require, `impulse` the jump
+//! equations with the matrix M alone, `inverse_dynamics` has the forces that accelerations require, `coriolis_matrix` the part of them
+//! that is quadratic in the velocities, `velocity_map` the Jacobians of points and of the momentum, `impulse` the jump
 //! of velocities by an impulse; `jumps` finds where rates jump, `switches` keeps piecewise rates on one side of these jumps,
 //! with the `surface_slopes` between them and what `holds` the motion on them, and `failure` says why rates are undefined.
 
@@ -21,6 +22,7 @@ pub(crate) mod point;
 pub(crate) mod projection;
 pub(crate) mod running_error;
 
+pub(crate) mod coriolis_matrix;
 pub(crate) mod first_order;
 pub(crate) mod forced_motion;
 pub(crate) mod holds;
@@ -38,3 +40,4 @@ pub(crate) mod options;
 pub(crate) mod surface_slopes;
 pub(crate) mod switches;
 pub(crate) mod vector_field;
+pub(crate) mod velocity_map;

@@ -233,6 +233,7 @@ mod system;
 mod transform;
 mod tree;
 
+pub use compiled::coriolis_matrix::CoriolisMatrix;
 pub use compiled::forced_motion::ForcedMotion;
 pub use compiled::impulse::ImpulseResponse;
 pub use compiled::inverse_dynamics::InverseDynamics;
@@ -242,6 +243,7 @@ pub use compiled::mass_factors::{MassFactors, SingularMatrix};
 pub use compiled::motion::Motion;
 pub use compiled::options::{CompileOptions, TreeElimination};
 pub use compiled::projection::integrals::KeptIntegrals;
+pub use compiled::velocity_map::VelocityMap;
 pub use constraints::body_reactions::BodyReaction;
 pub use constraints::constraint::Constraint;
 pub use constraints::multipliers::Multipliers;

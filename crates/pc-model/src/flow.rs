@@ -5,7 +5,8 @@
 //! Voronets' equations; then `compile`, which compiles
 //! their motion and evaluates it at the start. `reading` converts states to coordinates, quasi-velocities and first-order states; `events`
 //! evaluates the model's events on these, and `constrained_resets` finds the states that constraints allow after resets, `impacts` those after impacts of joints on their stops. `flow` combines
-//! all of this; `tolerances` depend on the scales of a flow; `prototype` gives a flow other values without deriving its equations again.
+//! all of this; `tolerances` depend on the scales of a flow; `prototype` gives a flow other values without deriving its equations again;
+//! `velocity_maps` has the Jacobians of bodies and of their momenta.
 
 pub(crate) mod compile;
 pub(crate) mod constrained_resets;
@@ -21,3 +22,4 @@ pub(crate) mod prototype;
 pub(crate) mod reading;
 pub(crate) mod start_slopes;
 pub(crate) mod tolerances;
+pub(crate) mod velocity_maps;

@@ -67,6 +67,7 @@ pub use flow::flow::Flow;
 pub use flow::free_form::FreeForm;
 pub use flow::prototype::{MemberValues, Prototype};
 pub use flow::tolerances::{ORDINARY_TOLERANCE, absolute_tolerances};
+pub use flow::velocity_maps::CentreOfMass;
 pub use model::builtin::{BUILTIN, Builtin, CLASSICS, TREES};
 pub use model::given::GivenQuasiVelocity;
 pub use model::model::{GivenInput, Model, UnknownInput, UnknownIntegral, UnknownParameter};

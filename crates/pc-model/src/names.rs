@@ -4,9 +4,10 @@
 //! expression may contain, depending on its place in the text. `scope` gives the meaning of a name in that
 //! place, `functions` and `declared` the meaning of a function, and `rates` the meaning of derivatives with respect to time;
 //! `definitions` resolves definitions in their order; `points` expresses points of bodies with joints as
-//! functions of the coordinates, `contacts` where a body touches a plane, and `momenta` what bodies that are `moving` have: mass
+//! functions of the coordinates, `body_motion` the motion of a body, `contacts` where a body touches a plane, and `momenta` what bodies that are `moving` have: mass
 //! centre, momentum, energy.
 
+pub(crate) mod body_motion;
 pub(crate) mod contacts;
 pub(crate) mod declared;
 pub(crate) mod definitions;

@@ -3,7 +3,7 @@
 //! This crate converts and delegates; the package in `python/` presents what it returns, and documents it for users. Read `error`, the
 //! exceptions, and `notation`, the names of options in their messages; `task`, work that Ctrl-C ends; `model`, a model and what is printed
 //! of it; `system`, its compiled equations, with `evaluation` at states and at arrays of states, and with `quantities` besides the rates,
-//! from `mechanics`; then `motion`, `dense`, `stepper`, `sweep`, `gradient` and `lyapunov`, integrations, all with the settings in `plan`;
+//! from `mechanics` and `kinematics`; then `motion`, `dense`, `stepper`, `sweep`, `gradient` and `lyapunov`, integrations, all with the settings in `plan`;
 //! `linear`, the motions near a state; `animation`, pages; and `exchange`, robots in URDF and FMUs.
 
 #![expect(clippy::needless_pass_by_value, reason = "what Python gives is converted into values of our own")]
@@ -14,6 +14,7 @@ mod error;
 mod evaluation;
 mod exchange;
 mod gradient;
+mod kinematics;
 mod linear;
 mod lyapunov;
 mod mechanics;

@@ -9,6 +9,7 @@ use pc_verify::Outlet;
 use pyo3::prelude::*;
 
 use crate::error::Error;
+use crate::kinematics::Kinematics;
 use crate::mechanics::Dynamics;
 use crate::model::{ModelCore, finite, renewed, variables, vouched};
 use crate::task::attended;
@@ -25,6 +26,7 @@ pub(crate) struct SystemCore {
     /// Flows for calls that take a long time, each with the version of its values.
     spare: Mutex<Vec<(u64, Flow)>>,
     pub(crate) dynamics: Mutex<Option<Dynamics>>,
+    pub(crate) kinematics: Mutex<Kinematics>,
     /// Whether a motion has been compared with a second derivation.
     pub(crate) verified: AtomicBool,
 }
@@ -131,6 +133,7 @@ impl SystemCore {
             setting: Mutex::new(()),
             spare: Mutex::new(Vec::new()),
             dynamics: Mutex::new(None),
+            kinematics: Mutex::default(),
             verified: AtomicBool::new(false),
         })
     }

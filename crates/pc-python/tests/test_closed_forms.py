@@ -129,6 +129,68 @@ def test_mass_matrix_brackets_and_energy() -> None:
     assert rate == pytest.approx(system(0.0, y)[0], rel=1e-14)
 
 
+def test_coriolis_matrix_of_a_double_pendulum() -> None:
+    # Rods as points of mass 1 at lengths 1 and 2, in absolute angles: M_12 = 2 cos(α − β).
+    text = """
+    [coordinates]
+    "α" = 0.3
+    "β" = -0.8
+    [quasi_velocities]
+    "α'" = 0.7
+    "β'" = -1.1
+    [lagrangian]
+    kinetic = "α'^2 + 2*β'^2 + 2*cos(α - β)*α'*β'"
+    potential = "-9.81*(2*cos(α) + 2*cos(β))"
+    """
+    system = chetaev.Model.from_text(text).system()
+    y = system.y0
+    h = 2 * np.sin(1.1)
+    c = system.coriolis(0.0, y)
+    assert c == pytest.approx(np.array([[0.0, -1.1 * h], [-0.7 * h, 0.0]]), rel=1e-14)
+    assert c @ y[2:] + system.gravity_compensation(0.0, y) == pytest.approx(system.bias(0.0, y), rel=1e-13)
+
+
+def test_momentum_and_jacobians_of_two_bodies() -> None:
+    # A cart with a pendulum of length l = 2: v = (x' + l φ' cos φ, 0, l φ' sin φ) of the bob.
+    text = """
+    [coordinates]
+    x = 0.4
+    "φ" = 0.6
+    [quasi_velocities]
+    "x'" = 1.5
+    "φ'" = -0.5
+    [gravity]
+    acceleration = [0, 0, -9.81]
+    [bodies.cart]
+    mass = 3
+    position = ["x", 0, 0]
+    [bodies.bob]
+    mass = 1
+    position = ["x + 2*sin(φ)", 0, "-2*cos(φ)"]
+    """
+    for form in ("poincare", "canonical", "orthonormal"):
+        system = chetaev.Model.from_text(text).system(form)
+        y = system.y0
+        columns = system.observe(0.0, y)
+        speed = np.array([1.5 - np.cos(0.6), 0.0, -np.sin(0.6)])
+        eta = [1.5, -0.5] if form == "canonical" else y[2:]
+        bob = system.body_jacobian(0.0, y, "bob")
+        assert bob.matrix.shape == (6, 2)
+        assert bob.matrix @ eta + bob.rest == pytest.approx(np.concatenate([speed, np.zeros(3)]), abs=1e-14)
+        momentum = system.centroidal(0.0, y)
+        assert (momentum.matrix @ eta)[:3] == pytest.approx(3 * np.array([1.5, 0, 0]) + speed, abs=1e-14)
+        centre = system.centre_of_mass(0.0, y)
+        assert centre == pytest.approx([0.4 + 0.5 * np.sin(0.6), 0.0, -0.5 * np.cos(0.6)], abs=1e-15)
+        moving = system.centre_of_mass_jacobian(0.0, y)
+        assert 4 * moving.matrix == pytest.approx(momentum.matrix[:3], abs=1e-14)
+        # The weight is all that acts along x and on the mass centre from outside, except the force on the cart along z.
+        if form != "canonical":
+            assert (moving.matrix @ system(0.0, y)[2:] + moving.rate)[0] == pytest.approx(0.0, abs=1e-14)
+        assert columns["x"] == 0.4
+    with pytest.raises(chetaev.ModelError, match="no body and no point has the name `bb`"):
+        system.body_jacobian(0.0, system.y0, "bb")
+
+
 def test_canonical_equations_give_the_same_motion() -> None:
     model = chetaev.Model.from_text(SYMMETRIC_TOP)
     momenta = model.system("canonical")

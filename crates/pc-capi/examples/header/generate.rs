@@ -48,7 +48,7 @@ fn within_extern_c(text: &str) -> String {
 }
 
 /// In the order in which a reader needs them.
-const FILES: [&str; 36] = [
+const FILES: [&str; 37] = [
     "api/version.rs",
     "ffi/status.rs",
     "ffi/error.rs",
@@ -72,6 +72,7 @@ const FILES: [&str; 36] = [
     "api/observe.rs",
     "api/events.rs",
     "api/mechanics.rs",
+    "api/kinematics.rs",
     "api/bracket.rs",
     "api/legendre.rs",
     "api/source.rs",

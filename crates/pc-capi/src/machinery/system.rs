@@ -14,6 +14,7 @@ use crate::ffi::pointer::handle;
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::{c_string, c_strings, nth};
 use crate::machinery::exclusive::Exclusive;
+use crate::machinery::kinematics::Kinematics;
 use crate::machinery::lock_free_rhs::Direct;
 use crate::machinery::mechanics::Mechanics;
 use crate::machinery::motion_field::MotionField;
@@ -86,6 +87,7 @@ pub(crate) struct Inner {
     /// Derived on first use.
     pub(crate) mechanics: Option<Mechanics>,
     pub(crate) inverse: Option<InverseDynamics>,
+    pub(crate) kinematics: Kinematics,
     pub(crate) legendre: Option<LegendreTransform>,
     /// The motion with ∂f/∂t, or nothing if f does not contain time.
     by_time: Option<Option<Box<Motion>>>,
@@ -166,6 +168,7 @@ impl pc_system {
             events,
             mechanics: None,
             inverse: None,
+            kinematics: Kinematics::default(),
             legendre: None,
             by_time: None,
             factors: None,

@@ -158,6 +158,19 @@ fn evaluations_allocate_nothing() {
             note("jvp", again(|e| pc_system_jvp(s, t, yp, n, v, n, product.as_mut_ptr(), n, e)));
             note("mass", again(|e| pc_system_mass_matrix(s, t, yp, n, mass.as_mut_ptr(), k * k, e)));
             note("right", again(|e| pc_system_right_hand_side(s, t, yp, n, mass.as_mut_ptr(), k, e)));
+            if ["heavy-top-lagrange", "chaplygin-sleigh", "puma-560"].contains(&case.0.as_str()) {
+                note("coriolis", again(|e| pc_system_coriolis(s, t, yp, n, mass.as_mut_ptr(), k * k, e)));
+            }
+            if case.0 == "puma-560" {
+                let mut columns = vec![0.0; 6 * (k + 2)];
+                let (out, six, three) = (columns.as_mut_ptr(), 6 * (k + 2), 3 * (k + 2));
+                note("centroidal", again(|e| pc_system_centroidal(s, t, yp, n, out, six, e)));
+                note("centre", again(|e| pc_system_centre_of_mass(s, t, yp, n, out, 3, e)));
+                note("of centre", again(|e| pc_system_centre_of_mass_jacobian(s, t, yp, n, out, three, e)));
+                let hand = c"hand".as_ptr();
+                let of_body = |e| pc_system_body_jacobian(s, t, yp, n, hand, ptr::null(), 0, out, six, e);
+                note("body", again(of_body));
+            }
             let w = product[..k].as_mut_ptr();
             note("solve_mass", again(|e| pc_system_solve_mass_matrix(s, t, yp, n, v, k, w, k, e)));
             if on_nothing && !has_tables {

@@ -20,6 +20,7 @@ mod header;
 mod hold_start;
 #[path = "../../examples/header/interface.rs"]
 mod interface;
+mod kinematics;
 mod laws;
 mod limits;
 mod misuse;

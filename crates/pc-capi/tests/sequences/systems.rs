@@ -1,6 +1,6 @@
 //! Calls of systems and of their kernels.
 
-use std::ffi::{c_char, c_int};
+use std::ffi::{CStr, c_char, c_int};
 use std::ptr;
 
 use pc::*;
@@ -9,6 +9,9 @@ use crate::callbacks::{Own, destroy, force, force_jacobian};
 use crate::calls::SystemCall;
 use crate::common::{At, c};
 use crate::handles::{Array, Handles, Outcome, free_text};
+
+/// A body of a model that calls build.
+const BODY: &CStr = c"b";
 
 impl Handles {
     fn made_system(
@@ -129,7 +132,7 @@ impl Handles {
             let _ = self.call(|error| {
                 pc_system_jacobian_pattern(system, &raw mut entries, ptr::null_mut(), ptr::null_mut(), error)
             });
-            let functions: [(At, usize); 15] = [
+            let functions: [(At, usize); 19] = [
                 (pc_system_time_derivative, dim),
                 (pc_system_parameter_jacobian, dim * pc_system_parameter_count(system.as_ref())),
                 (pc_system_right_hand_side, velocities),
@@ -143,6 +146,10 @@ impl Handles {
                 (pc_system_constraint_residuals, pc_system_constraint_count(system.as_ref())),
                 (pc_system_mass_matrix, velocities * velocities),
                 (pc_system_structure_coefficients, (operators + 1) * (operators + 1) * operators),
+                (pc_system_coriolis, velocities * velocities),
+                (pc_system_centroidal, 6 * (velocities + 2)),
+                (pc_system_centre_of_mass, 3),
+                (pc_system_centre_of_mass_jacobian, 3 * (velocities + 2)),
                 (pc_system_to_momenta, dim),
                 (pc_system_to_quasi_velocities, dim),
             ];
@@ -167,7 +174,8 @@ impl Handles {
             let velocities =
                 dim - pc_system_coordinate_count(system.as_ref()) - pc_system_state_count(system.as_ref());
             let [of_v, of_w] = [v_length, length].map(|length| length.min(velocities));
-            self.call(|error| match function % 13 {
+            let [mut columns, mut point] = [Array::of(room, 6 * (velocities + 2)), Array::of(room / 2, 3)];
+            self.call(|error| match function % 14 {
                 0 => pc_system_project(system, t, y, y_length, error),
                 1 => pc_system_keep_from(system, t, y, y_length, error),
                 2 => pc_system_event_reset(system, index, t, y, y_length, error),
@@ -180,6 +188,11 @@ impl Handles {
                 7 => pc_system_start_by_parameter(system, index, out, length, error),
                 8 => pc_system_absolute_tolerances(system, t, t + 1.0, out, length, error),
                 11 => pc_system_inverse_dynamics(system, t, y, y_length, v, of_v, out, of_w, error),
+                12 => {
+                    let (body, wide, columns) = (BODY.as_ptr(), columns.len(), columns.data());
+                    let (point, count) = (point.data(), point.len());
+                    pc_system_body_jacobian(system, t, y, y_length, body, point, count, columns, wide, error)
+                }
                 9 => pc_system_solve_mass_matrix(system, t, y, y_length, v, of_v, out, of_w, error),
                 _ => pc_system_residual(system, t, y, y_length, v, v_length, out, length, error),
             })

@@ -15,6 +15,8 @@ pub struct Equations<'g> {
     pub(crate) system: System<'g>,
     velocities: Vec<Expr<'g>>,
     energy: Expr<'g>,
+    /// The momenta ∂L/∂η_α, α > l, of the quasi-velocities that constraints make vanish, where these hold.
+    vanished: Vec<Expr<'g>>,
     /// The matrices M and r; for a large tree they are derived when first used.
     matrices: OnceCell<Matrices<'g>>,
 }
@@ -67,6 +69,7 @@ impl<'g> System<'g> {
                     system: self.clone(),
                     velocities: self.frame.velocities(&self.quasi_velocities),
                     energy: tree.energy(),
+                    vanished: Vec::new(),
                     matrices: OnceCell::new(),
                 });
             }
@@ -128,6 +131,7 @@ impl<'g> System<'g> {
         Ok(Equations {
             velocities,
             energy: shorten(&[energy])[0],
+            vanished: momenta[free..].to_vec(),
             matrices: OnceCell::from(Matrices { mass, right: shorten(&right) }),
             system,
         })
@@ -170,6 +174,11 @@ impl<'g> Equations<'g> {
         &self.matrices().right
     }
 
+    /// The momenta ∂L/∂η_α, α > l, of the quasi-velocities that constraints make vanish, where these hold.
+    pub(crate) fn vanished_momenta(&self) -> &[Expr<'g>] {
+        &self.vanished
+    }
+
     fn matrices(&self) -> &Matrices<'g> {
         self.matrices.get_or_init(|| {
             let k = self.system.quasi_velocities.len();
@@ -205,6 +214,7 @@ impl<'g> Equations<'g> {
         Equations {
             velocities: graph.substitute(&self.velocities, &numbers),
             energy: bind(&[self.energy])[0],
+            vanished: graph.substitute(&self.vanished, &numbers),
             matrices: self.matrices.get().map_or_else(OnceCell::new, bound),
             system,
         }

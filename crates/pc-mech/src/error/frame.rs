@@ -20,6 +20,16 @@ pub enum FrameError {
         /// Names and values of the variables at a jump.
         place: Vec<(String, f64)>,
     },
+    /// A velocity or momentum that is not affine in the quasi-velocities.
+    #[error(
+        "{what} is not affine in the quasi-velocities: its derivative by `{quasi_velocity}` depends on them"
+    )]
+    NotAffine {
+        /// The velocity or momentum.
+        what: String,
+        /// The quasi-velocity.
+        quasi_velocity: String,
+    },
     /// A part of the frame that depends on a first-order state.
     #[error("{what} depends on the first-order state `{state}`, which is not part of the frame")]
     OfState {

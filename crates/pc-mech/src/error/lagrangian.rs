@@ -31,6 +31,15 @@ pub enum LagrangianError {
         /// A quasi-velocity in which L is not quadratic.
         quasi_velocity: String,
     },
+    /// The Coriolis matrix was requested where the kinetic energy is not quadratic in the quasi-velocities.
+    #[error(
+        "the Coriolis matrix needs a Lagrangian that is quadratic in the quasi-velocities; the mass matrix of this one \
+         depends on `{quasi_velocity}`"
+    )]
+    NoCoriolisMatrix {
+        /// A quasi-velocity on which M depends.
+        quasi_velocity: String,
+    },
     /// Lagrange's equations were requested in coordinates that are not independent.
     #[error(
         "Lagrange's equations need independent coordinates; here {coordinates} coordinates move with \

@@ -156,6 +156,22 @@ impl<'g> Motions<'_, 'g> {
             .map(|(motion, stand)| matrix_of(&product(self.tree.graph, &motion.rotation, &stand.rotation)))
     }
 
+    /// The velocity of a point of a body, along the axes of the world; the point is given along the axes of the body,
+    /// from its origin.
+    pub fn velocity_of_point(&self, body: &str, point: &[Expr<'g>; 3]) -> Option<[Expr<'g>; 3]> {
+        let graph = self.tree.graph;
+        self.of_body(body).map(|(motion, stand)| {
+            let velocity = add(&motion.velocity, &cross(&motion.omega, &stand.point(graph, point)));
+            apply(graph, &motion.rotation, &velocity)
+        })
+    }
+
+    /// The angular velocity of a body, along the axes of the world.
+    pub fn angular_velocity_in_world(&self, body: &str) -> Option<[Expr<'g>; 3]> {
+        let graph = self.tree.graph;
+        self.of_body(body).map(|(motion, _)| apply(graph, &motion.rotation, &motion.omega))
+    }
+
     /// The motion of the link of a body, the position of the mass centre on the link, and the velocity of the
     /// mass centre along the axes of the link.
     fn centre(&self, body: usize) -> (LinkMotion<'g>, Vector<'g>, Vector<'g>) {

@@ -10,7 +10,7 @@ use proptest::test_runner::{RngSeed, TestRunner};
 
 /// A joint by its number, with its axes.
 #[derive(Clone, Debug)]
-struct Hung {
+pub(crate) struct Hung {
     kind: usize,
     axes: [[f64; 3]; 2],
     parent: Option<usize>,
@@ -163,6 +163,11 @@ impl Hung {
         joint.at(self.place).rotated(&Matrix::from_fn(3, 3, |i, j| rows[i][j]))
     }
 
+    /// The body on a joint without spring and damper.
+    pub(crate) fn with_inertia_alone(self) -> Hung {
+        Hung { drive: self.drive.map(|[armature, ..]| [armature, 0.0, 0.0, 0.0]), ..self }
+    }
+
     fn sizes(&self) -> (usize, usize) {
         if self.follows.is_some() {
             return (0, 0);
@@ -223,7 +228,7 @@ fn started<'g>(graph: &'g Graph, tree: &Tree<'g>, loaded: bool) -> SystemBuilder
     if loaded { system.gravity(|_| GRAVITY.map(Expr::from)) } else { system }
 }
 
-fn hung<'g>(graph: &'g Graph, bodies: &[Hung], loaded: bool) -> System<'g> {
+pub(crate) fn hung<'g>(graph: &'g Graph, bodies: &[Hung], loaded: bool) -> System<'g> {
     let tree = tree(graph, bodies, loaded);
     started(graph, &tree, loaded).tree(tree).build().unwrap()
 }
@@ -275,7 +280,7 @@ fn systems<'g>(graph: &'g Graph, bodies: &[Hung]) -> (System<'g>, System<'g>) {
 }
 
 /// A state with unit quaternions.
-fn state(bodies: &[Hung], numbers: &[f64]) -> Vec<f64> {
+pub(crate) fn state(bodies: &[Hung], numbers: &[f64]) -> Vec<f64> {
     let mut y: Vec<f64> = Vec::new();
     for body in bodies {
         let first = y.len();
@@ -296,13 +301,13 @@ fn state(bodies: &[Hung], numbers: &[f64]) -> Vec<f64> {
 }
 
 /// The largest difference of two lists, relative to the largest number in them.
-fn difference(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn difference(a: &[f64], b: &[f64]) -> f64 {
     let largest = a.iter().chain(b).fold(1.0f64, |largest, x| largest.max(x.abs()));
     a.iter().zip(b).fold(0.0, |worst: f64, (a, b)| worst.max((a - b).abs())) / largest
 }
 
 /// Random trees of `count` bodies, with numbers for their states.
-fn trees(cases: u32, count: usize, check: impl Fn(&[Hung], &[f64])) {
+pub(crate) fn trees(cases: u32, count: usize, check: impl Fn(&[Hung], &[f64])) {
     let config = ProptestConfig {
         cases,
         rng_seed: RngSeed::Fixed(20),
@@ -361,7 +366,7 @@ fn along_spheres(bodies: &[Hung], y: &[f64], numbers: impl Iterator<Item = f64>)
 
 /// Random trees in which most joints with one coordinate follow the first such joint, or the last, and half of
 /// them have drives.
-fn geared(cases: u32, count: usize, check: impl Fn(&[Hung], &[f64])) {
+pub(crate) fn geared(cases: u32, count: usize, check: impl Fn(&[Hung], &[f64])) {
     trees(cases, count, |bodies, numbers| {
         let mut bodies = bodies.to_vec();
         let single: Vec<usize> = (0..count).filter(|&i| (1..=3).contains(&bodies[i].kind)).collect();
@@ -502,7 +507,12 @@ fn the_jacobian_of_a_chain_with_oblique_axes_is_that_of_its_rates() {
 }
 
 /// Values of expressions of (x, η, η̇).
-fn values(system: &System<'_>, expressions: &[Expr<'_>], y: &[f64], accelerations: &[f64]) -> Vec<f64> {
+pub(crate) fn values(
+    system: &System<'_>,
+    expressions: &[Expr<'_>],
+    y: &[f64],
+    accelerations: &[f64],
+) -> Vec<f64> {
     let inputs = Inputs {
         time: Some(system.frame().time()),
         state: system.state().into_iter().chain(system.accelerations()).collect(),

@@ -42,6 +42,7 @@ impl MeaningError {
             | MeaningError::NoForm { .. }
             | MeaningError::OfJoint { .. }
             | MeaningError::Derivation { .. } => Category::Inconsistent,
+            MeaningError::NoBodies { .. } => Category::Unsupported,
             _ => Category::Text,
         }
     }
@@ -98,6 +99,12 @@ impl MeaningError {
             }
             MeaningError::NoFixedAxes { .. } => {
                 "give the body a `rotation` in place of `angular_velocity`".into()
+            }
+            MeaningError::UnknownBody { name, known } => {
+                suggest(name, known, "name a body of [bodies], or a point of [points]")
+            }
+            MeaningError::NoBodies { .. } => {
+                "declare its bodies in [bodies], in place of a kinetic energy as a formula".into()
             }
             MeaningError::NoGround { .. } => {
                 "the zero-moment point is one of the plane z = 0: give [gravity] a component along z".into()

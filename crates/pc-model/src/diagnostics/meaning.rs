@@ -136,6 +136,20 @@ pub enum MeaningError {
         /// The body.
         body: String,
     },
+    /// A body or a point of a body that does not exist.
+    #[error("no body and no point has the name `{name}`")]
+    UnknownBody {
+        /// The name.
+        name: String,
+        /// The names of bodies and points.
+        known: Vec<String>,
+    },
+    /// A momentum or mass centre of a model without bodies.
+    #[error("{what} is not known: the model has no bodies")]
+    NoBodies {
+        /// What was asked for.
+        what: &'static str,
+    },
     /// A zero-moment point without weight that holds the bodies on the plane.
     #[error("`{name}` is not known: no weight acts along z")]
     NoGround {

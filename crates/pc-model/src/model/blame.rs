@@ -117,6 +117,10 @@ impl Document {
                 let help = "its forms are poincare and, where the coordinates are independent, lagrange";
                 self.error(&self.energy_place(), MeaningError::NoForm { message: error.to_string(), help })
             }
+            MechError::Lagrangian(LagrangianError::NoCoriolisMatrix { .. }) => {
+                let help = "the kinetic energy of bodies is quadratic in the velocities; such a matrix belongs to it alone";
+                self.error(&self.energy_place(), MeaningError::NoForm { message: error.to_string(), help })
+            }
             MechError::Algebra(error) => self.algebra_error(error),
             MechError::Integral(IntegralError::Unknown { name, known }) => {
                 self.error(&self.kept_place(&name), MeaningError::UnknownIntegral { name, known })

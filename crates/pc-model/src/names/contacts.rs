@@ -16,25 +16,15 @@
 //! There ∂h/∂n is p − c, so that the derivatives of g with respect to x and y vanish, and with them the reactions of these two
 //! constraints.
 
-use pc_mech::{Expr, Matrix, Tree};
+use pc_mech::{Expr, Tree};
 
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
-use crate::document::{Contact, ContactShape, Expression, Orientation};
+use crate::document::{Contact, ContactShape, Expression};
+use crate::names::body_motion::{Vector, turned};
 use crate::names::points::hung;
 use crate::names::scope::Scope;
 use crate::names::stage::Stage;
-
-type Vector<'g> = [Expr<'g>; 3];
-
-/// The motion of a body: the position of its reference point and the rotation from its axes to the fixed ones; the
-/// velocity of that point along fixed axes, and the angular velocity along its own.
-struct Moving<'g> {
-    place: Vector<'g>,
-    rotation: Matrix<Expr<'g>>,
-    velocity: Vector<'g>,
-    turning: Vector<'g>,
-}
 
 /// The ground at a point: the point itself, where the ground is uneven along the axes along which its height changes; the
 /// normal; and the derivatives of the height.
@@ -78,7 +68,9 @@ impl<'g, 'd> Scope<'g, 'd> {
     /// centre of the shape along each of these.
     pub(crate) fn point_off_body(&mut self, number: usize) -> Result<Vec<(Expr<'g>, Expr<'g>)>, ModelError> {
         let contact = &self.document.contacts[number];
-        let (body, at) = (self.moving(contact)?, self.vector(contact.at.as_ref())?);
+        let attitude = contact.attitude.as_ref().map(|attitude| &*attitude.value);
+        let body = self.body_motion(&contact.body.value, attitude)?;
+        let at = self.vector(contact.at.as_ref())?;
         let centre = sum(&body.place, &turned(&body.rotation, &at, |r, i, j| r[(i, j)], self.graph));
         let mut off = Vec::with_capacity(contact.along.len());
         for (number_off, &axis) in contact.along.iter().enumerate() {
@@ -93,7 +85,8 @@ impl<'g, 'd> Scope<'g, 'd> {
         let graph = self.graph;
         let dot = |a: &Vector<'g>, b: &Vector<'g>| graph.dot(a.iter().copied(), b.iter().copied());
         let contact = &self.document.contacts[number];
-        let body = self.moving(contact)?;
+        let attitude = contact.attitude.as_ref().map(|attitude| &*attitude.value);
+        let body = self.body_motion(&contact.body.value, attitude)?;
         let at = self.vector(contact.at.as_ref())?;
         let ground = self.ground(contact)?;
         let normal = ground.normal;
@@ -187,62 +180,6 @@ impl<'g, 'd> Scope<'g, 'd> {
         Ok(value.map(|part| part / length))
     }
 
-    /// The motion of the body of a contact.
-    fn moving(&mut self, contact: &Contact) -> Result<Moving<'g>, ModelError> {
-        let document = self.document;
-        let placed = document.bodies.iter().find(|body| body.name.text == contact.body.value);
-        let Some(body) = placed else { return self.moving_on_joint(&contact.body.value) };
-        let mut place = [Expr::ZERO; 3];
-        for (value, part) in place.iter_mut().zip(&body.position) {
-            *value = self.resolve(part, Stage::Position)?;
-        }
-        let rates = self.rates();
-        let velocity = self.graph.directional(&place, &rates);
-        let velocity = [velocity[0], velocity[1], velocity[2]];
-        let entries = match (&body.orientation, &contact.attitude) {
-            (Some(Orientation::Rotation(entries)), _) => entries,
-            (_, Some(attitude)) => &attitude.value,
-            _ => return Ok(Moving { place, rotation: unit_matrix(), velocity, turning: [Expr::ZERO; 3] }),
-        };
-        let mut values = [Expr::ZERO; 9];
-        for (value, entry) in values.iter_mut().zip(entries.iter()) {
-            *value = self.resolve(entry, Stage::Position)?;
-        }
-        let rotation = Matrix::from_fn(3, 3, |i, j| values[3 * i + j]);
-        let turning = match &body.orientation {
-            Some(Orientation::AngularVelocity(components)) => {
-                let mut omega = [Expr::ZERO; 3];
-                for (value, part) in omega.iter_mut().zip(components.iter()) {
-                    *value = self.resolve(part, Stage::Constraint)?;
-                }
-                omega
-            }
-            _ => {
-                let rates = self.graph.directional(&values, &rates);
-                // ω_1 = Σ R_i3 R'_i2, and so on round: RᵀR' is antisymmetric.
-                [(2, 1), (0, 2), (1, 0)].map(|(j, k)| {
-                    let column = |of: &[Expr<'g>], j: usize| [of[j], of[3 + j], of[6 + j]];
-                    self.graph.dot(column(&values, j), column(&rates, k))
-                })
-            }
-        };
-        Ok(Moving { place, rotation, velocity, turning })
-    }
-
-    fn moving_on_joint(&mut self, body: &str) -> Result<Moving<'g>, ModelError> {
-        let tree = self.kinematic_tree()?;
-        let motions = tree.motions();
-        let zero = [Expr::ZERO; 3]; // bodies of contacts are in the tree
-        let rotation = motions.rotation(body).unwrap_or_else(unit_matrix);
-        let velocity = motions.velocity(body).unwrap_or(zero);
-        Ok(Moving {
-            place: motions.place(body).unwrap_or(zero),
-            velocity: turned(&rotation, &velocity, |r, i, j| r[(i, j)], self.graph),
-            turning: motions.angular_velocity(body).unwrap_or(zero),
-            rotation,
-        })
-    }
-
     /// The bodies on joints, without their masses.
     pub(super) fn kinematic_tree(&mut self) -> Result<Tree<'g>, ModelError> {
         let document = self.document;
@@ -266,20 +203,6 @@ fn tangents<'g>(axis: usize, normal: &Vector<'g>) -> [Vector<'g>; 2] {
     let own = |i: usize| if i == axis { Expr::ONE } else { Expr::ZERO };
     let first = [0, 1, 2].map(|i| (own(i) - share * normal[i]) / size);
     [first, cross(normal, &first)]
-}
-
-fn unit_matrix<'g>() -> Matrix<Expr<'g>> {
-    Matrix::from_fn(3, 3, |i, j| if i == j { Expr::ONE } else { Expr::ZERO })
-}
-
-/// R v, or Rᵀ v, according to the order of the indices in `entry`.
-fn turned<'g>(
-    rotation: &Matrix<Expr<'g>>,
-    v: &Vector<'g>,
-    entry: impl Fn(&Matrix<Expr<'g>>, usize, usize) -> Expr<'g>,
-    graph: &'g pc_mech::Graph,
-) -> Vector<'g> {
-    [0, 1, 2].map(|i| graph.dot((0..3).map(|j| entry(rotation, i, j)), v.iter().copied()))
 }
 
 fn sum<'g>(a: &Vector<'g>, b: &Vector<'g>) -> Vector<'g> {

@@ -60,6 +60,15 @@ impl<'g> Scope<'g, '_> {
         .filter(|_| !document.bodies.is_empty() || !document.tree.is_empty())
     }
 
+    /// All bodies as they move.
+    pub(crate) fn bodies_in_motion(&mut self) -> Result<&[Moving<'g>], ModelError> {
+        let bodies = match self.moving.take() {
+            Some(bodies) => bodies,
+            None => self.all_moving()?,
+        };
+        Ok(self.moving.insert(bodies))
+    }
+
     /// The value of what the part `span` of an expression names.
     pub(super) fn of_motion(
         &mut self,
@@ -278,7 +287,7 @@ impl<'g> Scope<'g, '_> {
         Ok(made)
     }
 
-    fn each<const N: usize>(
+    pub(super) fn each<const N: usize>(
         &mut self,
         list: &[Expression; N],
         stage: Stage,
@@ -291,6 +300,6 @@ impl<'g> Scope<'g, '_> {
     }
 }
 
-fn cross<'g>(a: &[Expr<'g>; 3], b: &[Expr<'g>; 3]) -> [Expr<'g>; 3] {
+pub(crate) fn cross<'g>(a: &[Expr<'g>; 3], b: &[Expr<'g>; 3]) -> [Expr<'g>; 3] {
     [(1, 2), (2, 0), (0, 1)].map(|(j, l)| a[j] * b[l] - a[l] * b[j])
 }

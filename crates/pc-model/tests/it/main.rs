@@ -23,5 +23,6 @@ mod resultants;
 mod stacks;
 mod states;
 mod tags;
+mod velocity_maps;
 #[path = "../../../../tests/src/verified.rs"]
 mod verified;

@@ -76,7 +76,7 @@ from chetaev._model import Model
 from chetaev._results.motion import Motion, Occurrence
 from chetaev._native import Stepper, __version__
 from chetaev._results.printed import Check, Equations, Page, Theory
-from chetaev._results.quantities import Bracket, Gradient, Lyapunov
+from chetaev._results.quantities import Bracket, Gradient, Lyapunov, VelocityMap
 from chetaev._results.sweep import Sweep
 from chetaev._system import System
 
@@ -119,6 +119,7 @@ __all__ = [
     "Trim",
     "Universal",
     "UnknownNameError",
+    "VelocityMap",
     "__version__",
     "abs_",
     "acos",

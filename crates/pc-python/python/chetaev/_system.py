@@ -13,7 +13,7 @@ from chetaev._language.inputs import course
 from chetaev._results.linear import Trim
 from chetaev._results.motion import Motion
 from chetaev._results.printed import Page
-from chetaev._results.quantities import Bracket, Gradient, Lyapunov
+from chetaev._results.quantities import Bracket, Gradient, Lyapunov, VelocityMap
 from chetaev._results.sweep import Sweep, swept
 from chetaev._results.values import Values
 
@@ -190,6 +190,78 @@ class System(_native.System):
         import numpy as np
 
         return np.array(self._inverse_dynamics(float(t), np.asarray(y, dtype=float).tolist(), None, True))
+
+    def coriolis(self, t: float, y: npt.ArrayLike) -> Floats:
+        """The Coriolis matrix C at a state: C η are the terms of M η̇ + h = Q that are quadratic in η.
+
+        Its coefficients are Christoffel's symbols of M, with those of the brackets, so that the rate of M less 2C is skew-symmetric
+        where neither M nor the frame depends on time.
+
+        Examples
+        --------
+        >>> from chetaev import Model
+        >>> system = Model.builtin("heavy-top-lagrange").system()
+        >>> y = system.y0
+        >>> c = system.coriolis(0.0, y)
+        >>> bool(abs(c + c.T).max() < 1e-15)  # M is constant
+        True
+        """
+        import numpy as np
+
+        size, entries = self._coriolis_entries(float(t), np.asarray(y, dtype=float).tolist())
+        return np.array(entries).reshape(size, size).T
+
+    def centroidal(self, t: float, y: npt.ArrayLike) -> VelocityMap:
+        """The momentum of all bodies, and their angular momentum about their common mass centre, along fixed axes.
+
+        Its ``matrix``, 6 × k, is the centroidal momentum matrix.
+        """
+        import numpy as np
+
+        return VelocityMap._of_columns(*self._centroidal(float(t), np.asarray(y, dtype=float).tolist()))
+
+    def centre_of_mass(self, t: float, y: npt.ArrayLike) -> Floats:
+        """The common mass centre of all bodies, along fixed axes."""
+        import numpy as np
+
+        return np.array(self._centre_of_mass(float(t), np.asarray(y, dtype=float).tolist())[0])
+
+    def centre_of_mass_jacobian(self, t: float, y: npt.ArrayLike) -> VelocityMap:
+        """The velocity of the common mass centre of all bodies, along fixed axes; its ``matrix`` is 3 × k."""
+        import numpy as np
+
+        found = self._centre_of_mass(float(t), np.asarray(y, dtype=float).tolist())
+        return VelocityMap._of_columns(*found[1])
+
+    def body_jacobian(
+        self, t: float, y: npt.ArrayLike, body: str, at: Sequence[float] = (0.0, 0.0, 0.0)
+    ) -> VelocityMap:
+        """The velocity of a point of a body and the angular velocity of the body, along fixed axes; the ``matrix`` is 6 × k.
+
+        Parameters
+        ----------
+        t : float
+            The time.
+        y : array
+            The state.
+        body : str
+            The name of a body, or of a point in ``[points]``.
+        at : sequence of 3 floats, optional
+            The position of the point from there, along the axes of the body.
+
+        Examples
+        --------
+        >>> from chetaev import Model
+        >>> system = Model.builtin("puma-560").system()
+        >>> jacobian = system.body_jacobian(0.0, system.y0, "hand", at=(0.0, 0.0, 0.1))
+        >>> jacobian.matrix.shape
+        (6, 6)
+        """
+        import numpy as np
+
+        point = [float(component) for component in at]
+        found = self._body_jacobian(float(t), np.asarray(y, dtype=float).tolist(), body, point)
+        return VelocityMap._of_columns(*found)
 
     def reactions(self, t: npt.ArrayLike, y: npt.ArrayLike) -> dict[str, Any]:
         """The reaction of each constraint, by its name.

@@ -41,7 +41,7 @@ r = 0.3
 a = 0.1
 k = 2.0
 [coordinates]
-wheel_x = "a + r"
+wheel_z = "a + r"
 [quasi_velocities]
 "wheel_φ'" = 3.0
 [gravity]
@@ -58,8 +58,8 @@ axis = [0, 1, 0]
 height = "a*cos(k*street_x)"
 motion = "rolls"
 [outputs]
-push = "d(d(wheel_y))"
-lift = "9.81 + d(d(wheel_x))"
+push = "d(d(wheel_x))"
+lift = "9.81 + d(d(wheel_z))"
 "#;
 
 #[test]

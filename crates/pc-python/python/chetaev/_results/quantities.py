@@ -13,6 +13,27 @@ if TYPE_CHECKING:
     Floats = npt.NDArray[np.float64]
 
 
+class VelocityMap(NamedTuple):
+    """A velocity or momentum w of m components as a function of the quasi-velocities η: w = matrix @ η + rest.
+
+    Its rate is matrix @ η̇ + rate.
+    """
+
+    #: The matrix, m × k: the Jacobian of a velocity, or the centroidal momentum matrix.
+    matrix: Floats
+    #: w for η = 0, which vanishes where nothing depends on time.
+    rest: Floats
+    #: The rate of w for η̇ = 0, such as J̇ η where w = J η.
+    rate: Floats
+
+    @classmethod
+    def _of_columns(cls, rows: int, columns: list[float]) -> VelocityMap:
+        import numpy as np
+
+        all_columns = np.array(columns).reshape(-1, rows).T
+        return cls(all_columns[:, :-2], all_columns[:, -2], all_columns[:, -1])
+
+
 class Lyapunov(NamedTuple):
     """Lyapunov exponents of a motion."""
 
