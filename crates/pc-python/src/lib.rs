@@ -2,7 +2,7 @@
 //!
 //! This crate converts and delegates; the package in `python/` presents what it returns, and documents it for users. Read `error`, the
 //! exceptions, and `notation`, the names of options in their messages; `task`, work that Ctrl-C ends; `model`, a model and what is printed
-//! of it; `system`, its compiled equations, with `evaluation` at states and at arrays of states, and with `quantities` besides the rates,
+//! of it; `system`, its compiled equations, with `evaluation` at states and at arrays of states, and with `quantities` and `jacobians` besides the rates,
 //! from `mechanics` and `kinematics`; then `motion`, `dense`, `stepper`, `sweep`, `gradient` and `lyapunov`, integrations, all with the settings in `plan`;
 //! `linear`, the motions near a state; `animation`, pages; and `exchange`, robots in URDF and FMUs.
 
@@ -14,6 +14,7 @@ mod error;
 mod evaluation;
 mod exchange;
 mod gradient;
+mod jacobians;
 mod kinematics;
 mod linear;
 mod lyapunov;

@@ -159,8 +159,8 @@ pub unsafe extern "C" fn pc_system_centre_of_mass_jacobian(
 /// Writes the Jacobian J of a point of a body at (t, y), column-major, with two more columns a and
 /// r: 6 × (k + 2), with k as in pc_system_mass_matrix. The velocity v of the point and the angular
 /// velocity ω of the body, along fixed axes, are (v, ω) = J η + a; a = 0 where nothing depends on
-/// t. Their rates are J η̇ + r. `body` is the name of a body, or of a point of [points]; `point`
-/// has 3 numbers, its position along the axes of the body from there, or is null for that place
+/// t. Their rates are J η̇ + r. `body` is the name of a body, or of a point of `[points]`;
+/// `point` has 3 numbers, its position along the axes of the body from there, or is null for that place
 /// itself. The first call for a name derives J, as pc_system_new derives equations, for all
 /// points. Returns PC_NOT_FOUND where there is no such body, and PC_INVALID_MODEL where its angular
 /// velocity is given without a rotation.

@@ -2,7 +2,7 @@
 //! equations quadratic in η, and C + Cᵀ is the rate of M along η.
 
 use crate::common::{driven, top_of_parameters};
-use crate::trees::{difference, geared, hung, state, trees, values};
+use crate::trees::{Hung, difference, geared, hung, state, trees, values};
 use pc_mech::{Equations, Expr, Graph, LagrangianError, Matrix, MechError, System};
 
 /// Columns as products go through the recursion of a tree twice: its rounding errors, relative to the largest entry.
@@ -181,7 +181,7 @@ fn trees_have_both_properties() {
 fn geared_trees_have_the_products() {
     geared(12, 7, |bodies, numbers| {
         // Without springs and dampers.
-        let bodies: Vec<_> = bodies.iter().cloned().map(|body| body.with_inertia_alone()).collect();
+        let bodies: Vec<_> = bodies.iter().cloned().map(Hung::with_inertia_alone).collect();
         let graph = Graph::new();
         let system = hung(&graph, &bodies, false);
         let equations = system.poincare().unwrap();

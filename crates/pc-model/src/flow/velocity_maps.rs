@@ -81,7 +81,7 @@ impl Model {
     /// The velocity v of a point of a body and the angular velocity ω of this body, along fixed axes: six functions
     /// (v, ω) = J η + J_0 of the state in these variables. The [arguments](VelocityMap::arguments_mut) are the position of
     /// the point along the axes of the body, from its origin (on a joint) or its position; where `name` is that of a point of
-    /// [points], from there. A particle does not turn.
+    /// `[points]`, from there. A particle does not turn.
     ///
     /// # Errors
     /// [`MeaningError::UnknownBody`]; [`MeaningError::NoFixedAxes`] for a body whose angular velocity is given without its

@@ -209,7 +209,7 @@ class System(_native.System):
         import numpy as np
 
         size, entries = self._coriolis_entries(float(t), np.asarray(y, dtype=float).tolist())
-        return np.array(entries).reshape(size, size).T
+        return np.array(entries).reshape((size, size), order="F")
 
     def centroidal(self, t: float, y: npt.ArrayLike) -> VelocityMap:
         """The momentum of all bodies, and their angular momentum about their common mass centre, along fixed axes.
