@@ -89,6 +89,12 @@ def _keys(dotted: str) -> list[str]:
     return keys
 
 
+def _slides(normal: list[float]) -> tuple[str, str]:
+    """The axes along which a planar joint slides: the two that follow its normal."""
+    axis = next(axis for axis in range(3) if normal[axis])
+    return "xyz"[(axis + 1) % 3], "xyz"[(axis + 2) % 3]
+
+
 def _variables(joint: dict, name: str) -> tuple[list[str], list[str]]:
     """Coordinates and velocities of a joint, in the order of a `State`."""
     match joint["kind"]:
@@ -99,7 +105,7 @@ def _variables(joint: dict, name: str) -> tuple[list[str], list[str]]:
             velocities = [f"{name}_{part}" for part in ("v1", "v2", "v3", "ω1", "ω2", "ω3")]
             return joint.get("coordinates", coordinates), joint.get("quasi_velocities", velocities)
         case "planar":
-            coordinates = joint.get("coordinates", [f"{name}_{part}" for part in ("x", "y", "φ")])
+            coordinates = joint.get("coordinates", [f"{name}_{part}" for part in (*_slides(joint["axis"]), "φ")])
         case _:
             coordinates = joint.get("coordinates", [name])
     return coordinates, joint.get("quasi_velocities", [f"{coordinate}'" for coordinate in coordinates])

@@ -2,7 +2,7 @@
 //!
 //! A [`Model`](crate::Model) becomes an [`Assembly`](assembly::Assembly). Read `assembly` first, then `assembler`,
 //! which the parts of the assembly share, and then the parts in the order in which `assemble` uses them:
-//! `parameters` and `tables`, `frame`, `definitions`, `start`, `bodies`, the `tree` of bodies on joints and
+//! `parameters` and `tables`, `frame`, `definitions`, `start` with the `points_of_contact`, `bodies`, the `tree` of bodies on joints and
 //! `external_force`, `brackets`, `joint_reactions`, `constraints` with `constraint_treatment`, `body_reactions` and
 //! the names of a `resultant`, `action`, `event` and `events` with the `stops` of joints, and the quasi-velocities `given` in addition to those of the text;
 //! `trial`, `definite`, `inertia` and `orientations` check the start. A `function` and a `drawing` are assembled
@@ -30,6 +30,7 @@ mod inertia;
 pub(crate) mod joint_reactions;
 pub(crate) mod orientations;
 pub(crate) mod parameters;
+mod points_of_contact;
 pub(crate) mod resultant;
 pub(crate) mod start;
 mod start_with_values;

@@ -1,9 +1,10 @@
 //! Files of results, which are written completely or not at all.
 //!
-//! A `target` is examined before anything is computed; `atomic` writes there, using a `partial` file that replaces the old
+//! What is written is kept `apart` from what is read. A `target` is examined before anything is computed; `atomic` writes there, using a `partial` file that replaces the old
 //! one as a whole. `rescue` saves a result that cannot be written to its place, and `kept` says where it was saved. A
 //! `stream` takes rows as they are computed; `error` lists the errors.
 
+pub mod apart;
 pub mod atomic;
 pub mod error;
 pub mod kept;

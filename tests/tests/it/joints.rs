@@ -3,6 +3,8 @@
 
 mod by_hand;
 mod contacts;
+mod friction_at_rest;
+mod ground;
 mod library;
 mod loops;
 mod loops_by_joints;

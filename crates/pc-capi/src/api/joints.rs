@@ -473,7 +473,7 @@ pub unsafe extern "C" fn pc_model_set_loop_length(
     unsafe { draft(model, error, "pc_model_set_loop_length", write) }
 }
 
-/// Adds a contact of a body with a plane. The shape is disc, sphere or ellipsoid, and the motion
+/// Adds a contact of a body with a plane or uneven ground. The shape is disc, sphere or ellipsoid, and the motion
 /// rolls or slides. pc_model_set_contact sets the size of the shape, and what else the text may
 /// say.
 #[unsafe(no_mangle)]
@@ -499,9 +499,9 @@ pub unsafe extern "C" fn pc_model_add_contact(
     unsafe { draft(model, error, "pc_model_add_contact", write) }
 }
 
-/// Sets an entry of a contact: radius, with 1 value; axis, semi_axes, at, normal or through, with
-/// 3; attitude, with 9; keeps, with the value true. The values are expressions, those of an axis
-/// numbers.
+/// Sets an entry of a contact: radius or height, with 1 value; axis, semi_axes, at, normal or
+/// through, with 3; attitude, with 9; keeps, with the value true. The values are expressions,
+/// those of an axis numbers.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_set_contact(
     model: *mut pc_model,
@@ -533,7 +533,7 @@ fn entry_of_contact(entry: &str, values: &[&str]) -> String {
         ("axis", _, Some(axis)) => {
             format!("[{}]", axis.into_iter().map(number).collect::<Vec<_>>().join(", "))
         }
-        ("radius" | "keeps", [value], _) => quoted(value),
+        ("radius" | "height" | "keeps", [value], _) => quoted(value),
         _ => list(values),
     }
 }

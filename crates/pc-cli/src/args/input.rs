@@ -1,13 +1,14 @@
 //! From MODEL on the command line to a model and its equations.
 
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use pc_expr::Limits;
 use pc_expr::parse::nearest;
 use pc_mech::{Equations, Graph};
 use pc_model::document::{read_bounded, read_file_bounded};
 use pc_model::{Assembly, Builtin, Document, Model, ModelError};
+use pc_run::files::{apart, target};
 
 use crate::args::options::{ModelArguments, Setting, VelocityArguments};
 use crate::error::CliError;
@@ -72,6 +73,21 @@ pub fn open_in(
         model.choose_independent(velocities.independent.iter().map(|name| name.trim()));
     }
     Ok(model)
+}
+
+/// Refuses to write a file that a model is read from, or two results to one file; `-` is standard output.
+///
+/// # Errors
+/// As for [`apart::keep_apart`].
+pub fn keep_apart<'p>(
+    arguments: &ModelArguments,
+    model: &Model,
+    written: impl IntoIterator<Item = Option<&'p Path>>,
+) -> Result<(), CliError> {
+    let (own, tables) = (PathBuf::from(&arguments.model), model.document().files());
+    let read = std::iter::once(&own).chain(&tables).map(PathBuf::as_path).filter(|path| path.is_file());
+    let written = written.into_iter().filter_map(target::file);
+    Ok(apart::keep_apart(read, written)?)
 }
 
 fn document(name: &str) -> Result<Document, CliError> {

@@ -81,11 +81,12 @@ pub fn command(arguments: &EmitArguments) -> Result<(), CliError> {
             }
         };
     };
+    let paths: Vec<_> = files.iter().map(|file| directory.join(&file.name)).collect();
+    input::keep_apart(&arguments.model, &model, paths.iter().map(|path| Some(path.as_path())))?;
     fs::create_dir_all(directory).map_err(|source| FileError::cannot_write(directory, source))?;
     let mut places = Vec::new();
-    for file in &files {
-        let path = directory.join(&file.name);
-        places.push(Target::regular(&path).map_err(|source| FileError::cannot_write(&path, source))?);
+    for path in &paths {
+        places.push(Target::regular(path).map_err(|source| FileError::cannot_write(path, source))?);
     }
     for (file, place) in files.iter().zip(&places) {
         let path = place.path();

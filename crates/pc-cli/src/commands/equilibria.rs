@@ -17,6 +17,7 @@ use crate::terminal::observer::Terminal;
 pub fn command(arguments: &EquilibriaArguments) -> Result<(), CliError> {
     let file = arguments.output.as_deref().map(|path| TableFile::new(path, Format::OF_LISTS)).transpose()?;
     let model = input::open(&arguments.model)?;
+    input::keep_apart(&arguments.model, &model, [arguments.output.as_deref()])?;
     let bounds = arguments.bounds.iter().map(|bounds| (bounds.name.clone(), bounds.low, bounds.high));
     let search = Search { bounds: bounds.collect(), starts: arguments.starts };
     let found = Found::of(&model, &search, !arguments.verify.no_verify, &Terminal)?;

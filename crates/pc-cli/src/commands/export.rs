@@ -22,6 +22,7 @@ pub fn command(arguments: &ExportArguments) -> Result<(), CliError> {
         .map(|(output, place)| place.map_err(|source| FileError::no_place(output, source)))
         .transpose()?;
     let model = input::open(&arguments.model)?;
+    input::keep_apart(&arguments.model, &model, [arguments.output.as_deref()])?;
     model.require_values()?;
     let (text, notes) = urdf_of_model(&model)?;
     notes.iter().for_each(|note| say(format_args!("note: {note}\n")));

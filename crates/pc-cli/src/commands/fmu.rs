@@ -31,6 +31,7 @@ pub fn command(arguments: &EmitArguments, version: FmuVersion) -> Result<(), Cli
     }
     let place = Target::regular(path).map_err(|source| FileError::cannot_write(path, source))?;
     let model = input::open_in(&arguments.model, &arguments.velocities, arguments.form == Variables::Given)?;
+    input::keep_apart(&arguments.model, &model, [Some(path.as_path())])?;
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     let version = match version {

@@ -24,6 +24,7 @@ pub fn command(arguments: &LinearizeArguments) -> Result<(), CliError> {
         return locus(arguments, vary, file.as_ref());
     }
     let model = input::open(&arguments.model)?;
+    input::keep_apart(&arguments.model, &model, [arguments.output.as_deref()])?;
     let verify = !arguments.verify.no_verify;
     let state = arguments.state.choice();
     let linear = match arguments.free.as_slice() {
@@ -42,6 +43,7 @@ pub fn command(arguments: &LinearizeArguments) -> Result<(), CliError> {
 fn locus(arguments: &LinearizeArguments, vary: &Vary, file: Option<&TableFile>) -> Result<(), CliError> {
     let picture = Destination::plot(arguments.plot.as_deref())?;
     let model = input::open(&arguments.model)?;
+    input::keep_apart(&arguments.model, &model, [arguments.output.as_deref(), arguments.plot.as_deref()])?;
     if arguments.model.set.iter().any(|set| set.name == vary.name) {
         return Err(LinearError::Twice { name: vary.name.clone() }.into());
     }

@@ -1,6 +1,9 @@
 //! `pc merge`: the shards of a sweep as one table.
 
+use std::path::PathBuf;
+
 use pc_print::{labelled, one_line};
+use pc_run::files::apart::keep_apart;
 use pc_run::sweep::output;
 use pc_run::sweep::shards::Shards;
 use pc_run::table::file::{Format, TableFile};
@@ -18,6 +21,8 @@ use crate::terminal::text;
 pub fn command(arguments: &MergeArguments) -> Result<(), CliError> {
     let file = TableFile::regular(&arguments.output, Format::OF_TABLES)?;
     let picture = Destination::plot(arguments.plot.as_deref())?;
+    let written = [Some(arguments.output.as_path()), arguments.plot.as_deref()];
+    keep_apart(arguments.shards.iter().map(PathBuf::as_path), written.into_iter().flatten())?;
     let shards = Shards::open(&arguments.shards)?;
     output::write(&file, &shards.title, &shards.sweep_columns, &shards)?;
     if let Some(place) = picture {

@@ -27,6 +27,7 @@ const PAPER: [f64; 2] = [480.0, 360.0];
 pub fn command(arguments: &ReportArguments) -> Result<(), CliError> {
     let destination = Destination::page(arguments.output.as_deref())?;
     let model = input::open(&arguments.shown.model)?;
+    input::keep_apart(&arguments.shown.model, &model, [arguments.output.as_deref()])?;
     if arguments.no_run {
         let page = model.derived(|assembly| report(&model, assembly, None))?;
         return destination.write_page(&page);
@@ -59,6 +60,7 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), CliError> {
         return Err(CliError::NoFrame);
     }
     let model = kept(input::open(&arguments.shown.model)?, &arguments.shown)?;
+    input::keep_apart(&arguments.shown.model, &model, [arguments.output.as_deref()])?;
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     let run = integrated(&model, &assembly, &arguments.shown)?;

@@ -2,12 +2,15 @@
 
 use pc_model::Variables;
 use pc_report::picture::{Drawing, Picture, Wanted};
+use pc_run::files::apart::keep_apart;
 use pc_run::files::stream::Stream;
+use pc_run::files::target;
 use pc_run::motion::integrate::Besides;
 use pc_run::motion::run::Run;
 use pc_run::motion::summary;
 use pc_run::table::file::TableFile;
 
+use crate::args::checkpoint::CheckpointArguments;
 use crate::args::input;
 use crate::args::options::{Outputs, RunArguments};
 use crate::error::CliError;
@@ -26,6 +29,11 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
         Destination::plot(arguments.plot.as_deref())?.map(|place| (place, arguments.drawn.wanted()));
     let is_hamel = arguments.form == Some(Variables::Given);
     let mut model = input::open_in(&arguments.model, &arguments.velocities, is_hamel)?;
+    let results = [arguments.output.as_deref(), arguments.plot.as_deref()];
+    let CheckpointArguments { checkpoint, resume, .. } = &arguments.checkpoints;
+    input::keep_apart(&arguments.model, &model, results.into_iter().chain([checkpoint.as_deref()]))?;
+    // The checkpoint from which a run continues may be replaced by later ones, but not by results.
+    keep_apart(resume.as_deref(), results.into_iter().filter_map(target::file))?;
     model.observe_reactions(arguments.outputs == Some(Outputs::Reactions));
     if arguments.outputs.is_some() && model.document().constraints.is_empty() {
         text::say(format_args!("note: there are no constraints, and so no reactions\n"));

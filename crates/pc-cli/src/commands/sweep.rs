@@ -27,6 +27,11 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
         return Err(CliError::Idle { option, of: arguments.of.word() });
     }
     let mut model = input::open(&arguments.model)?;
+    input::keep_apart(
+        &arguments.model,
+        &model,
+        [Some(arguments.output.as_path()), arguments.plot.as_deref()],
+    )?;
     for name in &arguments.project {
         model.keep(name).map_err(CliError::UnknownIntegral)?;
     }

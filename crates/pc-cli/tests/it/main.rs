@@ -46,6 +46,7 @@ mod program;
 mod project;
 #[path = "../../../../tests/src/classical/random.rs"]
 mod random;
+mod read_and_written;
 mod report;
 mod rolling_and_slipping;
 mod said_of_runs;

@@ -1,5 +1,7 @@
 //! The divisors of nodes as written: two forms of one function differ at points where a divisor vanishes.
 
+use rustc_hash::FxHashSet;
+
 use crate::graph::dag::Dag;
 use crate::graph::divisors::Divisors;
 use crate::graph::function::Function;
@@ -129,8 +131,13 @@ impl Dag {
     fn irreducible(&self, divisors: Divisors) -> Vec<Fingerprint> {
         let mut open = self.divisor_sets.get(divisors).to_vec();
         let mut values = Vec::with_capacity(open.len());
+        // In a tower of roots, each contains all those below it.
+        let mut known = FxHashSet::default();
         while let Some(node) = open.pop() {
             let (node, _) = self.split_coefficient(node, Number::ONE);
+            if !known.insert(node) {
+                continue;
+            }
             match self.node(node) {
                 Node::Product { factors } => {
                     open.extend(

@@ -96,6 +96,8 @@ struct Root {
     order: u32,
     /// R^order
     power: Value,
+    /// R^−order, once it has been asked for: each root of a tower is inverted once, not once for every root above it.
+    reciprocal: Option<Value>,
 }
 
 /// The roots that occur, and their products.
@@ -138,7 +140,7 @@ impl Roots {
             None => {
                 let power = power(self);
                 let root = self.roots.len() as u32;
-                self.roots.push(Root { value, order, power });
+                self.roots.push(Root { value, order, power, reciprocal: None });
                 self.known.insert(value, root);
                 root
             }
@@ -264,6 +266,17 @@ impl Roots {
         result
     }
 
+    /// R^−q of a root R with a known R^q.
+    fn reciprocal(&mut self, root: u32) -> Value {
+        let Root { power, reciprocal, .. } = &self.roots[root as usize];
+        if let Some(known) = reciprocal {
+            return known.clone();
+        }
+        let found = self.inverse(&power.clone());
+        self.roots[root as usize].reciprocal = Some(found.clone());
+        found
+    }
+
     /// 1/x. Square roots are taken out of the divisor one after the other, 1/(a + bR) = (a − bR)/(a² − b²R²).
     pub(crate) fn inverse(&mut self, x: &Value) -> Value {
         let plain: Value = x.fingerprint.powi(-1).into();
@@ -272,11 +285,9 @@ impl Roots {
             let roots = self.monomials[monomial.0 as usize].clone();
             let mut inverse: Value = c.powi(-1).into();
             for (root, k) in roots {
-                let Root { order, power, .. } = &self.roots[root as usize];
-                let (rest, power) = (order - k, power.clone());
-                let rest = self.monomial(vec![(root, rest)]);
+                let rest = self.monomial(vec![(root, self.roots[root as usize].order - k)]);
                 let rest = self.sum([(rest, Fingerprint::ONE)]);
-                let divisor = self.inverse(&power);
+                let divisor = self.reciprocal(root);
                 inverse = self.times(&inverse, &rest);
                 inverse = self.times(&inverse, &divisor);
             }

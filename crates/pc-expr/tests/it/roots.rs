@@ -168,3 +168,21 @@ fn many_roots_stay_cheap() {
     let product = forces.iter().fold(Expr::ONE, |product, &force| product * (1.0 + force));
     assert!(!product.is_zero() && graph.len() < 10_000, "{} nodes", graph.len());
 }
+
+/// A tower of roots, (…(x^1.5)^1.5…)^1.5 = x^(1.5^n), takes work that grows with its height, not twice as much for
+/// each storey: at twenty storeys that would be a million times as much.
+#[test]
+fn towers_of_roots_stay_small() {
+    const HEIGHT: i32 = 20;
+    let graph = Graph::new();
+    let x = graph.symbol("x");
+    let tower = (0..HEIGHT).fold(x, |storey, _| power(storey, 3, 2));
+    let derivative = graph.gradient(tower, &[x])[0];
+    let quotient = derivative / tower;
+    let value = graph.evaluate(&[tower, derivative, quotient], &[(x, 1.0)]).unwrap();
+    let exponent = 1.5f64.powi(HEIGHT);
+    assert_eq!(value[0], 1.0);
+    // Some two hundred roundings.
+    assert!(value[1..].iter().all(|value| (value / exponent - 1.0).abs() < 1e-13), "{value:?}");
+    assert!(graph.len() < 10_000, "{} nodes", graph.len());
+}

@@ -13,7 +13,7 @@ use crate::compiled::holds::Holds;
 use crate::compiled::motion::{Along, Form, Motion, Switches};
 use crate::compiled::options::CompileOptions;
 use crate::compiled::surface_slopes::SurfaceSlopes;
-use crate::error::MechError;
+use crate::error::{ForceError, MechError};
 use crate::system::signals::Signals;
 
 /// Motions with more surfaces than this cannot be held on one side of each.
@@ -28,12 +28,17 @@ impl<'g> FirstOrder<'g> {
     /// are solved for numerically.
     ///
     /// # Errors
-    /// As for [`Program::new`].
+    /// As for [`Program::new`]; [`ForceError::TooManySurfaces`] where these are held by stops or stiction.
     pub(crate) fn switches(&self, options: &CompileOptions) -> Result<Option<Switches>, MechError> {
         let placed = self.place_holds();
         let pushed = self.pushed(&placed.forces);
         let held = self.graph.held_on(&pushed.terms(), &self.passing(), &placed.surfaces);
-        if held.surfaces.is_empty() || held.surfaces.len() > MOST {
+        let surfaces = held.surfaces.len();
+        if surfaces > MOST && !self.holds.is_empty() {
+            // Without its holds, the motion would be another: stops would not stop it.
+            return Err(ForceError::TooManySurfaces { surfaces, most: MOST }.into());
+        }
+        if surfaces == 0 || surfaces > MOST {
             return Ok(None);
         }
         let sides = held.surfaces.iter().map(|surface| surface.side);

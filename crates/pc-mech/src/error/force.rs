@@ -46,6 +46,17 @@ pub enum ForceError {
         /// Names and values of the state.
         state: Vec<(String, f64)>,
     },
+    /// Dry friction and rigid stops of more joints than one motion can hold.
+    #[error(
+        "dry friction and rigid stops of the joints make {surfaces} surfaces on which a motion can stay; the most that \
+         are followed at a time are {most}"
+    )]
+    TooManySurfaces {
+        /// The surfaces: one for the friction of a joint, four for its two stops.
+        surfaces: usize,
+        /// The most that one motion can have.
+        most: usize,
+    },
     /// An external force that could not be computed.
     #[error("the external force on {} failed at t = {t}: {cause}", quoted(quasi_velocities))]
     Failed {

@@ -18,7 +18,7 @@ use crate::tree::spatial::{Tensor, Vector, ZERO, entries_of, unit};
 /// | [`screw`](Joint::screw) | both, with one coordinate | `arm`, `arm'` |
 /// | [`cylindrical`](Joint::cylindrical) | slides along and turns about an axis | `arm_z`, `arm_φ`, and their rates |
 /// | [`universal`](Joint::universal) | turns about an axis of the parent, then about one of its own | `arm_1`, `arm_2`, and their rates |
-/// | [`planar`](Joint::planar) | slides along two axes, turns about the third | `arm_x`, `arm_y`, `arm_φ`, and their rates |
+/// | [`planar`](Joint::planar) | slides along two axes, turns about the third | `arm_x`, `arm_y`, `arm_φ`, and their rates; `arm_y`, `arm_z` for the normal x, `arm_z`, `arm_x` for y |
 /// | [`spherical`](Joint::spherical) | turns about a point | a unit quaternion `arm_q0` … `arm_q3`; ω against the parent, in body axes, `arm_ω1` … `arm_ω3` |
 /// | [`free`](Joint::free) | any | the place `arm_x`, `arm_y`, `arm_z` of its origin and a quaternion; the velocity of its origin against the parent and ω, in body axes, `arm_v1` … `arm_ω3` |
 #[derive(Clone, Debug)]
@@ -358,7 +358,10 @@ impl<'g> Kind<'g> {
             Kind::Revolute(_) | Kind::Prismatic(_) | Kind::Screw(..) => rates(vec![body.to_owned()]),
             Kind::Cylindrical(_) => rates(with(&["z", "φ"])),
             Kind::Universal(..) => rates(with(&["1", "2"])),
-            Kind::Planar(_) => rates(with(&["x", "y", "φ"])),
+            Kind::Planar(normal) => {
+                let [first, second] = slides(normal);
+                rates(with(&[first, second, "φ"]))
+            }
             Kind::Spherical => (with(&QUATERNION), with(&["ω1", "ω2", "ω3"])),
             Kind::Free => {
                 let places = with(&["x", "y", "z"]);
@@ -366,4 +369,15 @@ impl<'g> Kind<'g> {
             }
         }
     }
+}
+
+/// The axes of its joint along which a planar joint slides: the two that follow its normal where that is one of them,
+/// otherwise the first two of the axes that it gets.
+fn slides(normal: &[f64; 3]) -> [&'static str; 2] {
+    let along = |axis: usize| (0..3).all(|i| (normal[i] != 0.0) == (i == axis));
+    [["y", "z"], ["z", "x"]]
+        .into_iter()
+        .enumerate()
+        .find(|(axis, _)| along(*axis))
+        .map_or(["x", "y"], |(_, names)| names)
 }

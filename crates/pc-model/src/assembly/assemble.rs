@@ -124,6 +124,7 @@ impl<'g> Assembler<'g, '_> {
         let mut constraints = self.constraints()?;
         let mut at = parameters;
         at.push((self.graph.symbol("t"), t_start));
+        self.place_contacts(&mut given, &at)?;
         at.extend(self.scope.coordinates().into_iter().zip(given.values.iter().copied()));
         let (frame, completing) = self.frame(&mut constraints, &at)?;
         let mut eta =

@@ -6,7 +6,7 @@ use super::constraints::Written;
 use crate::assembly::assembler::Assembler;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
-use crate::document::NamedExpression;
+use crate::document::{Contact, Name, NamedExpression};
 use crate::names::scope::entry;
 use crate::names::stage::Stage;
 
@@ -60,8 +60,12 @@ impl<'g> Assembler<'g, '_> {
     fn frame_of_kinematics(&mut self, time: Expr<'g>, x: Vec<Expr<'g>>) -> Result<Frame<'g>, ModelError> {
         let document = self.model.document();
         let mut velocities = self.joint_velocities()?;
+        let of_contacts: Vec<&Name> = document.contacts.iter().flat_map(Contact::coordinates).collect();
         for coordinate in &document.coordinates[velocities.len()..] {
-            if document.kinematics.is_empty() {
+            // A contact declares the velocity x' with its coordinate x, unless the kinematics give it.
+            let is_of_contact = of_contacts.iter().any(|name| name.text == coordinate.name.text)
+                && entry(&document.kinematics, &coordinate.name.text).is_none();
+            if document.kinematics.is_empty() || is_of_contact {
                 velocities.push(self.scope.velocity(&coordinate.name.text));
                 continue;
             }

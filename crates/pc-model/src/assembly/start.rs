@@ -8,7 +8,7 @@ use super::constraints::Written;
 use crate::assembly::assembler::Assembler;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
-use crate::document::Expression;
+use crate::document::{Contact, Expression, Name};
 use crate::model::model::Model;
 use crate::names::scope::{Scope, entry};
 use crate::names::stage::Stage;
@@ -27,7 +27,7 @@ pub(super) struct Given {
     /// quasi-velocity is declared; values that are not given are zero.
     pub(super) values: Vec<f64>,
     /// Whether each of these values is given.
-    is_given: Vec<bool>,
+    pub(super) is_given: Vec<bool>,
     /// Velocities of coordinates that are given in addition to quasi-velocities, in the order of
     /// `start_velocities`.
     velocities: Vec<f64>,
@@ -85,9 +85,11 @@ impl<'g> Assembler<'g, '_> {
     pub(super) fn given_start(&mut self, parameters: &[(Expr<'g>, f64)]) -> Result<Given, ModelError> {
         let document = self.model.document();
         let (mut values, mut is_given, mut velocities) = (Vec::new(), Vec::new(), Vec::new());
+        let found: Vec<&Name> = document.contacts.iter().flat_map(Contact::found_coordinates).collect();
+        let is_found = |name: &Name| found.iter().any(|found| found.text == name.text);
         for coordinate in &document.coordinates {
             values.push(self.start_value(&coordinate.expression, parameters)?);
-            is_given.push(true);
+            is_given.push(!is_found(&coordinate.name));
         }
         for quasi_velocity in &document.quasi_velocities {
             let start = quasi_velocity.start.as_ref();

@@ -1,7 +1,5 @@
 //! The tables of inputs: lists in the text of the model, or columns of a file beside it.
 
-use std::path::Path;
-
 use pc_mech::{KnownRates, Table, TableError};
 
 use crate::diagnostics::error::ModelError;
@@ -61,12 +59,11 @@ fn fault(document: &Document, place: &Place, what: String, help: &'static str) -
 fn from_file(document: &Document, file: &TableFile) -> Result<Table, ModelError> {
     let name = &file.file.value;
     let wrong = |what: String| fault(document, &file.file.place, what, COLUMNS);
-    let beside = Path::new(document.source.name()).parent().unwrap_or(Path::new(""));
     let unread = |error: String| {
         let help = "paths are relative to the model's file";
         fault(document, &file.file.place, format!("`{name}` cannot be read: {error}"), help)
     };
-    let bytes = read_file_bounded(beside.join(name)).map_err(|error| unread(error.to_string()))?;
+    let bytes = read_file_bounded(document.beside(name)).map_err(|error| unread(error.to_string()))?;
     let text =
         String::from_utf8(bytes).map_err(|_| unread("stream did not contain valid UTF-8".to_owned()))?;
     let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate();

@@ -81,7 +81,10 @@ impl Document {
         let action = self.hamilton_jacobi.iter().flat_map(|action| &action.constants);
         let constants = action.map(|(name, _)| (name, Role::Constant));
         let points = self.points.iter().flat_map(|point| &point.components).map(|name| (name, Role::Point));
-        let contacts = self.contacts.iter().flat_map(|contact| &contact.components);
+        // Coordinates of points of contact are among the coordinates.
+        let contacts = self.contacts.iter().flat_map(|contact| {
+            contact.components.iter().filter(|name| contact.component(&name.text).is_some())
+        });
         let contacts = contacts.map(|name| (name, Role::Contact));
         let mut names: Vec<(&Name, Role)> = quasi
             .chain(states)

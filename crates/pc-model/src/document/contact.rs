@@ -1,17 +1,17 @@
-//! Contacts of bodies with a fixed plane: a disc, a sphere or an ellipsoid that rolls or slides on it.
+//! Contacts of bodies with a fixed ground, plane or uneven: a disc, a sphere or an ellipsoid that rolls or slides on it.
 
 use pc_expr::parse::AstKind;
 
 use crate::document::expression::{Expression, Located, Name};
 
-/// A contact of a body with a fixed plane.
+/// A contact of a body with a fixed ground.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contact {
     /// Its name.
     pub name: Name,
-    /// The body that touches the plane.
+    /// The body that touches the ground.
     pub body: Located<String>,
-    /// The part of the surface of the body that may touch the plane.
+    /// The part of the surface of the body that may touch the ground.
     pub shape: ContactShape,
     /// The centre of the shape, in body axes, relative to the origin of a body with a joint or to the `position` of
     /// another body; that point if left out.
@@ -24,14 +24,22 @@ pub struct Contact {
     pub normal: Option<[Expression; 3]>,
     /// A point of the plane; the origin of the fixed axes if left out.
     pub through: Option<[Expression; 3]>,
+    /// The height of an uneven ground, in terms of `NAME_x` and `NAME_y`; it takes the place of a plane.
+    pub height: Option<Expression>,
+    /// The fixed axes, 0 and 1, along which the height changes. The point of contact has a coordinate along each of
+    /// them, `NAME_x` or `NAME_y`.
+    pub along: Vec<usize>,
+    /// Those of them whose coordinates have no start value in the text: it is found from the place of the body.
+    pub found: Vec<usize>,
     /// Whether the contact also pulls, so that it never ends.
     pub keeps: bool,
-    /// `NAME_x` to `NAME_z`, the point of contact along fixed axes; `NAME_gap`, the distance from the plane; and
-    /// `NAME_slip_1`, `NAME_slip_2`, the velocity along the plane of the material point of the body there.
+    /// `NAME_x` to `NAME_z`, the point of contact along fixed axes; `NAME_gap`, the distance from the ground;
+    /// `NAME_slip_1`, `NAME_slip_2`, the velocity along the ground of the material point of the body there; and on uneven
+    /// ground `NAME_off_x`, `NAME_off_y`, how far that point is beside the normal, for each coordinate of the point.
     pub components: Vec<Name>,
 }
 
-/// A convex shape that touches a plane in one point.
+/// A convex shape that touches the ground in one point.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ContactShape {
     /// The edge of a disc.
@@ -54,13 +62,31 @@ pub enum ContactShape {
 }
 
 impl Contact {
-    pub(super) const ENDS: [&'static str; 6] = ["x", "y", "z", "gap", "slip_1", "slip_2"];
+    const ENDS: [&'static str; 6] = ["x", "y", "z", "gap", "slip_1", "slip_2"];
+    /// The number of components that contacts with a plane have, too.
+    pub(crate) const COMMON: usize = Contact::ENDS.len();
     /// The index of the gap among the components; the velocities of slip follow it.
     pub(crate) const GAP: usize = 3;
 
-    /// The index of the component with this name.
+    /// The ends of the names of its components, for a ground whose height changes along these axes.
+    pub(super) fn ends(along: &[usize]) -> impl Iterator<Item = &'static str> {
+        Contact::ENDS.into_iter().chain(along.iter().map(|&axis| ["off_x", "off_y"][axis.min(1)]))
+    }
+
+    /// The index of the component with this name; none for a coordinate of the point of contact.
     pub fn component(&self, name: &str) -> Option<usize> {
-        self.components.iter().position(|component| component.text == name)
+        let component = self.components.iter().position(|component| component.text == name);
+        component.filter(|number| !self.along.contains(number))
+    }
+
+    /// The names of the coordinates of the point of contact.
+    pub fn coordinates(&self) -> impl Iterator<Item = &Name> {
+        self.along.iter().filter_map(|&axis| self.components.get(axis))
+    }
+
+    /// The names of those of them whose start values are found from the place of the body.
+    pub(crate) fn found_coordinates(&self) -> impl Iterator<Item = &Name> {
+        self.found.iter().filter_map(|&axis| self.components.get(axis))
     }
 
     /// The names of its reactions, each with the name of its constraint: the normal force, then for a body that rolls

@@ -1,13 +1,16 @@
-//! The section of contacts, and the constraints and events that they declare.
+//! The section of contacts, and the coordinates, constraints and events that they declare.
 
 use pc_expr::Direction;
 
 use super::reader::{Item, Table};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::{ErrorKind, Role};
+use crate::diagnostics::source::Place;
 use crate::document::contact::{Contact, ContactShape};
-use crate::document::contents::{Constraint, Document, Event, Orientation};
+use crate::document::contents::{Constraint, Document, Event, Orientation, QuasiVelocity};
 use crate::document::expression::{Expression, Located, Name, NamedExpression};
+use crate::document::following::mentions;
+use crate::document::joints::prime;
 use crate::document::tree::direction;
 
 const KEYS: &[&str] = &[
@@ -21,6 +24,7 @@ const KEYS: &[&str] = &[
     "motion",
     "normal",
     "through",
+    "height",
     "keeps",
 ];
 const RADIUS: &str = "radius = \"r\"";
@@ -48,7 +52,8 @@ fn contact(item: &Item<'_>) -> Result<Contact, ModelError> {
     let table = item.section(&format!("contacts.{}", name.text), "[contacts.NAME]")?;
     let (mut body, mut kind, mut motion) = (None, None, None);
     let (mut radius, mut axis, mut semi_axes) = (None, None, None);
-    let (mut at, mut attitude, mut normal, mut through, mut keeps) = (None, None, None, None, None);
+    let (mut at, mut attitude, mut keeps) = (None, None, None);
+    let (mut normal, mut through, mut height) = (None, None, None);
     for part in table.items() {
         match part.key() {
             "body" => body = Some(part.text()?),
@@ -64,6 +69,7 @@ fn contact(item: &Item<'_>) -> Result<Contact, ModelError> {
             "motion" => motion = Some(part.choice(&[("rolls", true), ("slides", false)])?.value),
             "normal" => normal = Some(part.array("3 expressions", NORMAL)?),
             "through" => through = Some(part.array("3 expressions", "through = [0, 0, 0]")?),
+            "height" => height = Some((part.clone(), part.expression()?)),
             "keeps" => keeps = Some(part.boolean()?.value),
             _ => return Err(part.unknown(KEYS)),
         }
@@ -94,11 +100,24 @@ fn contact(item: &Item<'_>) -> Result<Contact, ModelError> {
             ContactShape::Ellipsoid { semi_axes: Box::new(semi_axes) }
         }
     };
+    if let (Some((part, _)), true) = (&height, normal.is_some() || through.is_some()) {
+        return Err(part.key_error(ErrorKind::Exclusive {
+            first: "height",
+            second: if normal.is_some() { "normal" } else { "through" },
+            help: "write `normal` and `through` for a plane, and `height` for uneven ground",
+        }));
+    }
+    let height = height.map(|(_, height)| height);
+    let changes = |axis: &usize| {
+        let coordinate = format!("{}_{}", name.text, ["x", "y"][*axis]);
+        height.as_ref().is_some_and(|height| mentions(&height.ast, &coordinate))
+    };
+    let along: Vec<usize> = [0, 1].into_iter().filter(changes).collect();
     let component = |end| item.derived_name(format!("{}_{end}", name.text));
     Ok(Contact {
         body: body.ok_or_else(|| missing("body", "body = \"…\""))?,
         rolls: motion.ok_or_else(|| missing("motion", "motion = \"rolls\""))?,
-        components: Contact::ENDS.into_iter().map(component).collect::<Result<_, _>>()?,
+        components: Contact::ends(&along).map(component).collect::<Result<_, _>>()?,
         keeps: keeps.unwrap_or(false),
         name,
         shape,
@@ -106,7 +125,35 @@ fn contact(item: &Item<'_>) -> Result<Contact, ModelError> {
         attitude,
         normal,
         through,
+        height,
+        along,
+        found: Vec::new(),
     })
+}
+
+/// Adds the coordinates of points of contact with uneven ground, with their velocities where `[kinematics]` gives those of the
+/// other coordinates.
+pub(super) fn declare_coordinates(document: &mut Document) -> Result<(), ModelError> {
+    let mut contacts = std::mem::take(&mut document.contacts);
+    for contact in &mut contacts {
+        let known = |name: &Name, list: &[NamedExpression]| list.iter().any(|x| x.name.text == name.text);
+        let is_given = |axis: &usize| {
+            contact.components.get(*axis).is_none_or(|name| known(name, &document.coordinates))
+        };
+        contact.found = contact.along.iter().copied().filter(|axis| !is_given(axis)).collect();
+        for name in contact.coordinates() {
+            if !known(name, &document.coordinates) {
+                let expression = Expression::following(&document.source, "0".to_owned(), &name.place)?;
+                document.coordinates.push(NamedExpression { name: name.clone(), expression });
+            }
+            if !document.kinematics.is_empty() && !known(name, &document.kinematics) {
+                let name = Name { text: prime(&name.text), place: name.place.clone() };
+                document.quasi_velocities.push(QuasiVelocity { name, is: None, start: None });
+            }
+        }
+    }
+    document.contacts = contacts;
+    Ok(())
 }
 
 /// Adds the constraints, the outputs and the events of contacts to the document.
@@ -118,13 +165,14 @@ pub(super) fn declare(document: &mut Document) -> Result<(), ModelError> {
         let place = &contact.name.place;
         let following =
             |document: &Document, text: String| Expression::following(&document.source, text, place);
+        for component in &contact.components[Contact::COMMON..] {
+            check_label(document, &component.text, place)?;
+            let expression = following(document, component.text.clone())?;
+            document.constraints.push(Constraint { name: component.clone(), expression, kind: None });
+        }
         let ends = Contact::GAP..Contact::GAP + if contact.rolls { 3 } else { 1 };
         for (component, (force, label)) in ends.zip(contact.reactions()) {
-            if let Some(taken) = document.constraints.iter().find(|known| known.name.text == label) {
-                let line = document.source.position(taken.name.place.span.start).line;
-                let kind = ErrorKind::NameTaken { name: label, first: Role::Constraint, line };
-                return Err(document.source.error(place, kind));
-            }
+            check_label(document, &label, place)?;
             let expression = following(document, contact.components[component].text.clone())?;
             let reaction = following(document, format!("λ_{label}"))?;
             let named = |text: String| Name { text, place: place.clone() };
@@ -143,6 +191,16 @@ pub(super) fn declare(document: &mut Document) -> Result<(), ModelError> {
         }
     }
     Ok(())
+}
+
+/// Checks that no constraint has this name.
+fn check_label(document: &Document, label: &str, place: &Place) -> Result<(), ModelError> {
+    let Some(taken) = document.constraints.iter().find(|known| known.name.text == label) else {
+        return Ok(());
+    };
+    let line = document.source.position(taken.name.place.span.start).line;
+    let kind = ErrorKind::NameTaken { name: label.to_owned(), first: Role::Constraint, line };
+    Err(document.source.error(place, kind))
 }
 
 /// Checks that the body of a contact exists, and that its attitude is known.

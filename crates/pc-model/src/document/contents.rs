@@ -1,6 +1,8 @@
 //! The text of a model as a typed document: every entry has its place in the file, and names are not yet
 //! resolved.
 
+use std::path::{Path, PathBuf};
+
 use pc_expr::Direction;
 use pc_mech::{Interpolation, KnownRates};
 
@@ -316,5 +318,19 @@ impl Document {
     pub fn end(&self) -> Place {
         let end = self.source.text().trim_end().len();
         Place { entry: String::new(), span: end..end }
+    }
+
+    /// The files that it reads besides its own: those of the tables of inputs.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let of_table = |input: &Input| match &input.value {
+            InputValue::File(table) => Some(self.beside(&table.file.value)),
+            InputValue::Constant(_) | InputValue::RateOf(_) | InputValue::Lists { .. } => None,
+        };
+        self.inputs.iter().filter_map(of_table).collect()
+    }
+
+    /// The path of a file that the text names: relative to the directory of the model.
+    pub(crate) fn beside(&self, name: &str) -> PathBuf {
+        Path::new(self.source.name()).parent().unwrap_or(Path::new("")).join(name)
     }
 }

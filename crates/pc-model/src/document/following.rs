@@ -85,7 +85,7 @@ fn coordinate(body: &TreeBody) -> Option<&str> {
 }
 
 /// Whether an expression contains a name.
-fn mentions(ast: &Ast, name: &str) -> bool {
+pub(super) fn mentions(ast: &Ast, name: &str) -> bool {
     let any = |parts: &[&Ast]| parts.iter().any(|part| mentions(part, name));
     match &ast.kind {
         AstKind::Number(_) => false,

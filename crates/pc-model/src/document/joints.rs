@@ -171,14 +171,18 @@ impl JointKind {
         }
     }
 
-    /// The names of the coordinates of a joint called `name`.
-    pub(crate) fn coordinates(self, name: &str) -> Vec<String> {
+    /// The names of the coordinates of a joint called `name` with these axes.
+    pub(crate) fn coordinates(self, name: &str, axes: &[[f64; 3]]) -> Vec<String> {
         let ends: &[&str] = match self {
             JointKind::Fixed => &[],
             JointKind::Revolute | JointKind::Prismatic | JointKind::Screw => &[""],
             JointKind::Cylindrical => &["_z", "_φ"],
             JointKind::Universal => &["_1", "_2"],
-            JointKind::Planar => &["_x", "_y", "_φ"],
+            JointKind::Planar => match axes {
+                [[x, ..]] if *x != 0.0 => &["_y", "_z", "_φ"],
+                [[_, y, _]] if *y != 0.0 => &["_z", "_x", "_φ"],
+                _ => &["_x", "_y", "_φ"],
+            },
             JointKind::Spherical => &["_q0", "_q1", "_q2", "_q3"],
             JointKind::Free => &["_x", "_y", "_z", "_q0", "_q1", "_q2", "_q3"],
         };

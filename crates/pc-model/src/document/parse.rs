@@ -38,6 +38,7 @@ impl Document {
             document.read(&item, &mut loops)?;
         }
         document.source = source;
+        contacts::declare_coordinates(&mut document)?;
         hanging::declare(&mut document, loops, &declared)?;
         contacts::declare(&mut document)?;
         checks::check_names(&document)?;

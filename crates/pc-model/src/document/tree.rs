@@ -222,7 +222,7 @@ fn joint(item: &Item<'_>, body: &Item<'_>) -> Result<Joint, ModelError> {
         return Err(without_effect(part, kind));
     }
     driven.iter().try_for_each(|part| check_companions(part, &drive))?;
-    let coordinates = names(coordinates.as_ref(), body, kind.coordinates(body.key()))?;
+    let coordinates = names(coordinates.as_ref(), body, kind.coordinates(body.key(), &axes))?;
     let gear = Gear { follows, ratio, offset };
     if let Some(follows) = gear.following(kind, &coordinates, quasi_velocities.as_ref())? {
         let (coordinates, quasi_velocities) = (Vec::new(), Vec::new());

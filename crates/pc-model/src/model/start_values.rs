@@ -2,6 +2,7 @@
 
 use crate::assembly::start;
 use crate::diagnostics::error::ModelError;
+use crate::document::Contact;
 use crate::document::tolerance::AbsoluteTolerance;
 use crate::model::model::Model;
 
@@ -121,8 +122,8 @@ impl Model {
         !document.quasi_velocities.is_empty() && !document.start_velocities.is_empty()
     }
 
-    /// Whether velocities that have no start value may be determined by constraints: [`start`](Model::start) then does not
-    /// contain their values.
+    /// Whether velocities that have no start value may be determined by constraints, or the points of contacts with uneven
+    /// ground by the places of bodies: [`start`](Model::start) then does not contain their values.
     pub fn completes_start(&self) -> bool {
         let document = self.document();
         let n = document.coordinates.len();
@@ -134,6 +135,14 @@ impl Model {
             }
             false => document.quasi_velocities.iter().map(|eta| eta.start.is_some()).collect(),
         };
+        let is_set_coordinate = |name: &str| {
+            let place = document.coordinates.iter().position(|x| x.name.text == name);
+            self.overridden_starts().iter().any(|&(set, _)| Some(set) == place)
+        };
+        let mut found = document.contacts.iter().flat_map(Contact::found_coordinates);
+        if found.any(|name| !is_set_coordinate(&name.text)) {
+            return true;
+        }
         !document.constraints.is_empty() && !given.iter().enumerate().all(|(s, &given)| given || is_set(s))
     }
 

@@ -1,12 +1,20 @@
-//! Contacts of bodies with planes, as functions of coordinates and velocities.
+//! Contacts of bodies with the ground, as functions of coordinates and velocities.
 //!
-//! With the outward unit normal n of the plane, which leads through p_0, a convex body of centre c touches the plane at
+//! With the outward unit normal n of a plane, which leads through p_0, a convex body of centre c touches the plane at
 //!
 //!   p = c − ρ(n),    g = n·(c − p_0) − h(n) = 0,    ρ = ∂h/∂n,
 //!
 //! where h is the support function of the body: r for a sphere, r |n − (n·e) e| for a disc with the axle e, and
 //! √(a²n_1² + b²n_2² + c²n_3²) for an ellipsoid along its own axes. The material point of the body at p has the velocity
 //! u = v + ω × (p − c), of which n·u is the rate of g.
+//!
+//! Where the ground has the height f(x, y), the plane is the tangent plane at the point p_0 = (x, y, f(x, y)), whose
+//! coordinates x and y are coordinates of the system, tied to the body by
+//!
+//!   t_i·(p − p_0) = 0,    t_1 = (1, 0, f_x),    t_2 = (0, 1, f_y),    n = t_1 × t_2/|t_1 × t_2|.
+//!
+//! There ∂h/∂n is p − c, so that the derivatives of g with respect to x and y vanish, and with them the reactions of these two
+//! constraints.
 
 use pc_mech::{Expr, Tree};
 
@@ -18,7 +26,15 @@ use crate::names::points::hung;
 use crate::names::scope::Scope;
 use crate::names::stage::Stage;
 
-impl<'g> Scope<'g, '_> {
+/// The ground at a point: the point itself, where the ground is uneven along the axes along which its height changes; the
+/// normal; and the derivatives of the height.
+struct Ground<'g> {
+    through: Vector<'g>,
+    normal: Vector<'g>,
+    slopes: [Expr<'g>; 2],
+}
+
+impl<'g, 'd> Scope<'g, 'd> {
     /// The contact that has a component with this name, and the index of the component.
     pub(super) fn contact_of(&self, name: &str) -> Option<(usize, usize)> {
         let contacts = self.document.contacts.iter().enumerate();
@@ -39,27 +55,41 @@ impl<'g> Scope<'g, '_> {
         component: usize,
     ) -> Result<Option<Expr<'g>>, ModelError> {
         if let Some(known) = self.contacts.get(&number) {
-            return Ok(known.map(|values| values[component]));
+            return Ok(known.as_ref().map(|values| values[component]));
         }
         self.contacts.insert(number, None);
         let values = self.touching(number)?;
+        let value = values[component];
         self.contacts.insert(number, Some(values));
-        Ok(Some(values[component]))
+        Ok(Some(value))
     }
 
-    /// The point of contact, the gap, and the velocities of slip.
-    fn touching(&mut self, number: usize) -> Result<[Expr<'g>; 6], ModelError> {
+    /// How far the point of contact with this number is beside the normal, for each of its coordinates, and the place of the
+    /// centre of the shape along each of these.
+    pub(crate) fn point_off_body(&mut self, number: usize) -> Result<Vec<(Expr<'g>, Expr<'g>)>, ModelError> {
+        let contact = &self.document.contacts[number];
+        let attitude = contact.attitude.as_ref().map(|attitude| &*attitude.value);
+        let body = self.body_motion(&contact.body.value, attitude)?;
+        let at = self.vector(contact.at.as_ref())?;
+        let centre = sum(&body.place, &turned(&body.rotation, &at, |r, i, j| r[(i, j)], self.graph));
+        let mut off = Vec::with_capacity(contact.along.len());
+        for (number_off, &axis) in contact.along.iter().enumerate() {
+            let value = self.contact(number, Contact::COMMON + number_off)?;
+            off.push((value.unwrap_or(Expr::ZERO), centre[axis]));
+        }
+        Ok(off)
+    }
+
+    /// The components of a contact, in the order of their names.
+    fn touching(&mut self, number: usize) -> Result<Vec<Expr<'g>>, ModelError> {
         let graph = self.graph;
         let dot = |a: &Vector<'g>, b: &Vector<'g>| graph.dot(a.iter().copied(), b.iter().copied());
         let contact = &self.document.contacts[number];
         let attitude = contact.attitude.as_ref().map(|attitude| &*attitude.value);
         let body = self.body_motion(&contact.body.value, attitude)?;
         let at = self.vector(contact.at.as_ref())?;
-        let through = self.vector(contact.through.as_ref())?;
-        let normal = match &contact.normal {
-            None => [Expr::ZERO, Expr::ZERO, Expr::ONE],
-            Some(normal) => self.unit(normal)?,
-        };
+        let ground = self.ground(contact)?;
+        let normal = ground.normal;
         let to_fixed = |v: &Vector<'g>| turned(&body.rotation, v, |r, i, j| r[(i, j)], graph);
         let to_body = |v: &Vector<'g>| turned(&body.rotation, v, |r, i, j| r[(j, i)], graph);
         let centre = sum(&body.place, &to_fixed(&at));
@@ -93,11 +123,47 @@ impl<'g> Scope<'g, '_> {
             }
         };
         let velocity = sum(&body.velocity, &along);
-        let [x, y, z] = sum(&centre, &arm);
-        let from_plane = [0, 1, 2].map(|i| centre[i] - through[i]);
-        let gap = dot(&normal, &from_plane) - support;
+        let mut point = sum(&centre, &arm);
+        let from_ground = [0, 1, 2].map(|i| centre[i] - ground.through[i]);
+        let gap = dot(&normal, &from_ground) - support;
+        let beside = |&axis: &usize| {
+            let across = point[axis] - ground.through[axis];
+            across + ground.slopes[axis] * (point[2] - ground.through[2])
+        };
+        let off: Vec<Expr<'g>> = contact.along.iter().map(beside).collect();
+        contact.along.iter().for_each(|&axis| point[axis] = ground.through[axis]);
+        if contact.height.is_some() {
+            point[2] = ground.through[2];
+        }
         let [first, second] = tangents(contact.first_tangent(), &normal);
-        Ok([x, y, z, gap, dot(&first, &velocity), dot(&second, &velocity)])
+        let slips = [dot(&first, &velocity), dot(&second, &velocity)];
+        Ok(point.into_iter().chain([gap]).chain(slips).chain(off).collect())
+    }
+
+    /// The plane of a contact, or the tangent plane of its ground.
+    fn ground(&mut self, contact: &'d Contact) -> Result<Ground<'g>, ModelError> {
+        let Some(height) = &contact.height else {
+            let through = self.vector(contact.through.as_ref())?;
+            let normal = match &contact.normal {
+                None => [Expr::ZERO, Expr::ZERO, Expr::ONE],
+                Some(normal) => self.unit(normal)?,
+            };
+            return Ok(Ground { through, normal, slopes: [Expr::ZERO; 2] });
+        };
+        let coordinates: Vec<(&'d str, Expr<'g>)> =
+            contact.coordinates().map(|name| (name.text.as_str(), self.graph.symbol(&name.text))).collect();
+        let outer = std::mem::replace(&mut self.arguments, coordinates.clone());
+        let value = self.resolve(height, Stage::Height);
+        self.arguments = outer;
+        let mut through = [Expr::ZERO, Expr::ZERO, value?];
+        let mut slopes = [Expr::ZERO; 2];
+        for (&axis, (_, coordinate)) in contact.along.iter().zip(coordinates) {
+            through[axis] = coordinate;
+            slopes[axis] = self.graph.gradient(through[2], &[coordinate])[0];
+        }
+        let upwards = [-slopes[0], -slopes[1], Expr::ONE];
+        let length = self.graph.dot(upwards, upwards).sqrt();
+        Ok(Ground { through, normal: upwards.map(|part| part / length), slopes })
     }
 
     fn vector(&mut self, list: Option<&[Expression; 3]>) -> Result<Vector<'g>, ModelError> {

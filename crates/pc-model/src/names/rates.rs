@@ -19,8 +19,10 @@ impl<'g> Scope<'g, '_> {
         stage: Stage,
     ) -> Result<Expr<'g>, ModelError> {
         if let Some(rate) = self.rate_of_input(name) {
-            let refused =
-                matches!(stage, Stage::Parameter | Stage::Body | Stage::Start | Stage::Joint | Stage::Action);
+            let refused = matches!(
+                stage,
+                Stage::Parameter | Stage::Body | Stage::Height | Stage::Start | Stage::Joint | Stage::Action
+            );
             return match refused {
                 false => Ok(rate),
                 true => Err(self.error(expression, span, |text| MeaningError::NotHere {
@@ -43,6 +45,7 @@ impl<'g> Scope<'g, '_> {
         match stage {
             Stage::Parameter
             | Stage::Body
+            | Stage::Height
             | Stage::Start
             | Stage::Joint
             | Stage::Kinematics
@@ -79,6 +82,7 @@ impl<'g> Scope<'g, '_> {
         let refused = match stage {
             Stage::Parameter
             | Stage::Body
+            | Stage::Height
             | Stage::Start
             | Stage::Joint
             | Stage::Kinematics

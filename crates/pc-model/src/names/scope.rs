@@ -21,9 +21,14 @@ use crate::names::stage::Stage;
 pub(crate) struct Written<'g> {
     pub(crate) value: Expr<'g>,
     pub(crate) place: Place,
+    /// As far as a message shows it.
     pub(crate) text: String,
     context: Context<'g>,
 }
+
+/// The characters of a part that a message may show. Each operand of a long sum is a part of its own, and the text up
+/// to it as long as the sum.
+const MOST_SHOWN: usize = 600;
 
 /// Where a part is written: in which definition, if any, and in which branches of `step`.
 #[derive(Clone, Default)]
@@ -67,7 +72,7 @@ pub(crate) struct Scope<'g, 'd> {
     /// The arguments of the function whose value is being resolved.
     pub(super) arguments: Vec<(&'d str, Expr<'g>)>,
     /// The values of the contacts used so far, by their numbers; none for one that is being found.
-    pub(super) contacts: HashMap<usize, Option<[Expr<'g>; 6]>>,
+    pub(super) contacts: HashMap<usize, Option<Vec<Expr<'g>>>>,
     /// The components of points, which are all computed when one of them is used.
     pub(super) points: Option<HashMap<String, Expr<'g>>>,
     /// The motions of all bodies, which are computed when one of them is used.
@@ -195,8 +200,9 @@ impl<'g, 'd> Scope<'g, 'd> {
     }
 
     pub(super) fn note(&mut self, expression: &Expression, span: Span, value: Expr<'g>) {
-        let text = expression.text.get(span.start..span.end).unwrap_or_default().to_owned();
-        let context = self.context.clone();
+        let text = expression.text.get(span.start..span.end).unwrap_or_default();
+        let end = text.char_indices().nth(MOST_SHOWN).map_or(text.len(), |(end, _)| end);
+        let (text, context) = (text[..end].to_owned(), self.context.clone());
         self.written.push(Written { value, place: expression.place(span), text, context });
     }
 
@@ -319,7 +325,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         if name == "pi" {
             return Ok(std::f64::consts::PI.into());
         }
-        if stage == Stage::Body {
+        if matches!(stage, Stage::Body | Stage::Height) {
             return self.name_in_body(name).map_or_else(|| refuse(self), Ok);
         }
         let own = self.context.definition.map(|(_, own)| own);
@@ -348,7 +354,12 @@ impl<'g, 'd> Scope<'g, 'd> {
         }
         match stage {
             _ if is_input => match stage {
-                Stage::Parameter | Stage::Body | Stage::Start | Stage::Joint | Stage::Action => refuse(self),
+                Stage::Parameter
+                | Stage::Body
+                | Stage::Height
+                | Stage::Start
+                | Stage::Joint
+                | Stage::Action => refuse(self),
                 Stage::Definition
                 | Stage::Kinematics
                 | Stage::Position

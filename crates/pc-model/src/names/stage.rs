@@ -7,6 +7,8 @@ pub(crate) enum Stage {
     Parameter,
     /// The value of a function may contain its arguments and parameters.
     Body,
+    /// The height of the ground may contain the coordinates of the point of contact and parameters.
+    Height,
     /// A start value may contain parameters, and definitions in terms of them.
     Start,
     /// A definition of a quasi-velocity may contain coordinates, t, and velocities x'.
@@ -46,6 +48,7 @@ impl Stage {
         match self {
             Stage::Parameter
             | Stage::Body
+            | Stage::Height
             | Stage::Start
             | Stage::Definition
             | Stage::Kinematics
@@ -68,6 +71,7 @@ impl Stage {
         match self {
             Stage::Parameter => "the value of a parameter",
             Stage::Body => "the value of a function",
+            Stage::Height => "the height of the ground",
             Stage::Start => "a start value",
             Stage::Definition => "the definition of a quasi-velocity",
             Stage::Kinematics => "[kinematics]",
@@ -89,6 +93,7 @@ impl Stage {
         match self {
             Stage::Parameter => "numbers and parameters before it",
             Stage::Body => "numbers, its arguments and parameters",
+            Stage::Height => "numbers, parameters, and NAME_x and NAME_y of this contact",
             Stage::Start | Stage::Joint => "numbers, parameters and definitions made of them",
             Stage::Definition => "parameters, coordinates, velocities x' and t",
             Stage::Kinematics => "parameters, coordinates, quasi-velocities and t",

@@ -28,6 +28,28 @@ pub enum FileError {
         /// Why.
         source: io::Error,
     },
+    /// A file that would be written is one of those that are read.
+    #[error(
+        "{} is the file {}, which is read; it would be replaced, and nothing was computed; give another name",
+        path.display(), read.display()
+    )]
+    AlsoRead {
+        /// The file, as named by the option.
+        path: PathBuf,
+        /// The name under which it is read.
+        read: PathBuf,
+    },
+    /// Two results that would be written to one file.
+    #[error(
+        "{} is the file {}, and both would be written; nothing was computed; give another name",
+        path.display(), other.display()
+    )]
+    Twice {
+        /// The file, as named by the second option.
+        path: PathBuf,
+        /// The name under which it is written already.
+        other: PathBuf,
+    },
     /// A result that could not be written.
     #[error("cannot write {path}{kept}")]
     Write {
@@ -54,7 +76,10 @@ impl FileError {
     /// The kind of the error.
     pub fn category(&self) -> Category {
         match self {
-            FileError::UnknownExtension { .. } | FileError::Place { .. } => Category::Request,
+            FileError::UnknownExtension { .. }
+            | FileError::Place { .. }
+            | FileError::AlsoRead { .. }
+            | FileError::Twice { .. } => Category::Request,
             FileError::Write { .. } => Category::Unwritten,
         }
     }

@@ -103,7 +103,7 @@ fn try_directory(file: &Path) -> io::Result<()> {
 const MOST_LINKS: usize = 40;
 
 /// The file to which links lead, which does not exist yet.
-fn end_of_links(path: &Path) -> io::Result<PathBuf> {
+pub(super) fn end_of_links(path: &Path) -> io::Result<PathBuf> {
     let mut file = path.to_owned();
     for _ in 0..MOST_LINKS {
         match fs::read_link(&file) {

@@ -1,16 +1,18 @@
-//! Contacts of bodies with planes, as terms.
+//! Contacts of bodies with the ground, as terms.
 //!
 //! The point of contact p is found along fixed axes: the point of the edge of a disc, or of the surface x·A⁻¹x = 1 of an
 //! ellipsoid, at which −n is the outward normal,
 //!
 //!   p = c − r (n − (n·e) e)/|n − (n·e) e|,    p = c − A n/√(n·A n),    A = R diag(a²) Rᵀ.
 //!
-//! The gap is the height of p above the plane. The material point there has, from c and the axes of the body, the
+//! The gap is the height of p above the plane, or along n above the point p_0 of uneven ground, to which p is tied by
+//! (1, 0, f_x)·(p − p_0) = 0 and (0, 1, f_y)·(p − p_0) = 0. The material point there has, from c and the axes of the body, the
 //! velocity ċ + Ṙ Rᵀ (p − c), or v + ω × (p − x) where ω is given.
 
 use pc_model::document::{Contact, ContactShape, Document, Expression, Orientation};
 
 use crate::error::Unable;
+use crate::text::ground::Ground;
 use crate::text::names::Names;
 use crate::text::term::{Function, Term};
 
@@ -101,6 +103,9 @@ impl<'a> Touching<'a> {
     }
 
     fn normal(&self) -> Result<Vec<Term>, Unable> {
+        if self.contact.height.is_some() {
+            return Ok(Ground::of(self.contact, self.names)?.normal());
+        }
         let Some(normal) = &self.contact.normal else { return Ok(unit(2)) };
         let normal: Vec<Term> =
             normal.iter().map(|part| self.names.resolve(&part.ast)).collect::<Result<_, _>>()?;
@@ -112,19 +117,49 @@ impl<'a> Touching<'a> {
         self.rotation.chunks(3).map(|row| dot(row, v)).collect()
     }
 
+    /// A point of the ground: on uneven ground the point of contact, of which `point` has the coordinates along which the
+    /// height does not change.
+    fn through(&self, point: &[Term]) -> Result<Vec<Term>, Unable> {
+        if self.contact.height.is_some() {
+            let mut through = point[..2].to_vec();
+            for (&axis, name) in self.contact.along.iter().zip(self.contact.coordinates()) {
+                through[axis] = self.names.coordinate(&name.text)?;
+            }
+            return Ok([through, vec![Ground::of(self.contact, self.names)?.height()]].concat());
+        }
+        match &self.contact.through {
+            Some(through) => through.iter().map(|part| self.names.resolve(&part.ast)).collect(),
+            None => Ok(vec![Term::Number(0.0); 3]),
+        }
+    }
+
+    /// (1, 0, f_x)·(p − p_0) and (0, 1, f_y)·(p − p_0), for the axes along which the height changes.
+    fn off(&self, above: &[Term]) -> Result<Vec<Term>, Unable> {
+        if self.contact.along.is_empty() {
+            return Ok(Vec::new());
+        }
+        let ground = Ground::of(self.contact, self.names)?;
+        let along = |&axis: &usize| {
+            let rise = times([&ground.slope(axis), &above[2]]);
+            sum(vec![above[axis].clone(), rise])
+        };
+        Ok(self.contact.along.iter().map(along).collect())
+    }
+
     /// The components of the contact, whose point of contact is `point`; `omega` is the angular velocity along the axes
     /// of the rotation, if it is given.
     pub(super) fn components(&self, point: Vec<Term>, omega: Option<&[Term]>) -> Result<Vec<Term>, Unable> {
         let n = self.normal()?;
-        let through = match &self.contact.through {
-            Some(through) => {
-                through.iter().map(|part| self.names.resolve(&part.ast)).collect::<Result<_, _>>()?
-            }
-            None => vec![Term::Number(0.0); 3],
-        };
-        let above: Vec<Term> =
-            point.iter().zip(&through).map(|(p, q)| difference(p.clone(), q.clone())).collect();
+        let through = self.through(&point)?;
+        let changes = |i: usize| i == 2 || self.contact.height.is_none() || self.contact.along.contains(&i);
+        let above: Vec<Term> = (0..3)
+            .map(|i| match changes(i) {
+                true => difference(point[i].clone(), through[i].clone()),
+                false => Term::Number(0.0),
+            })
+            .collect();
         let gap = dot(&n, &above);
+        let off = self.off(&above)?;
         let velocity = match omega {
             Some(omega) => {
                 let arm = self.arm(&point, &self.place);
@@ -148,7 +183,8 @@ impl<'a> Touching<'a> {
         let size = root(dot(&projected, &projected));
         let first: Vec<Term> = projected.into_iter().map(|part| quotient(part, &size)).collect();
         let slips = [dot(&first, &velocity), dot(&cross(&n, &first), &velocity)];
-        Ok(point.into_iter().chain([gap]).chain(slips).collect())
+        let place = if self.contact.height.is_some() { through } else { point };
+        Ok(place.into_iter().chain([gap]).chain(slips).chain(off).collect())
     }
 
     fn arm(&self, point: &[Term], from: &[Term]) -> Vec<Term> {
@@ -164,7 +200,7 @@ fn unit(axis: usize) -> Vec<Term> {
     (0..3).map(|i| Term::Number(f64::from(u8::from(i == axis)))).collect()
 }
 
-fn times<const N: usize>(factors: [&Term; N]) -> Term {
+pub(super) fn times<const N: usize>(factors: [&Term; N]) -> Term {
     if factors.iter().any(|factor| is(factor, 0.0)) {
         return Term::Number(0.0);
     }
@@ -177,11 +213,11 @@ fn times<const N: usize>(factors: [&Term; N]) -> Term {
     }
 }
 
-fn quotient(term: Term, by: &Term) -> Term {
+pub(super) fn quotient(term: Term, by: &Term) -> Term {
     if is(&term, 0.0) || is(by, 1.0) { term } else { Term::Product(vec![(false, term), (true, by.clone())]) }
 }
 
-fn sum(terms: Vec<Term>) -> Term {
+pub(super) fn sum(terms: Vec<Term>) -> Term {
     let mut terms: Vec<(bool, Term)> =
         terms.into_iter().filter(|term| !is(term, 0.0)).map(|term| (false, term)).collect();
     match terms.len() {
@@ -191,11 +227,11 @@ fn sum(terms: Vec<Term>) -> Term {
     }
 }
 
-fn negative(term: Term) -> Term {
+pub(super) fn negative(term: Term) -> Term {
     if is(&term, 0.0) { term } else { Term::Negative(Box::new(term)) }
 }
 
-fn difference(a: Term, b: Term) -> Term {
+pub(super) fn difference(a: Term, b: Term) -> Term {
     match (is(&a, 0.0), is(&b, 0.0)) {
         (_, true) => a,
         (true, false) => negative(b),
@@ -203,11 +239,11 @@ fn difference(a: Term, b: Term) -> Term {
     }
 }
 
-fn root(term: Term) -> Term {
+pub(super) fn root(term: Term) -> Term {
     if is(&term, 1.0) { term } else { Term::Call(Function::Sqrt, vec![term]) }
 }
 
-fn dot(a: &[Term], b: &[Term]) -> Term {
+pub(super) fn dot(a: &[Term], b: &[Term]) -> Term {
     sum(a.iter().zip(b).map(|(a, b)| times([a, b])).collect())
 }
 

@@ -221,12 +221,10 @@ fn velocities(document: &Document, tree: &Tree<'_>, names: &Names) -> Result<Vel
         if let Some((_, rate)) = of_joints.iter().find(|(x, _)| x == name) {
             return Ok(rate.clone());
         }
-        if document.kinematics.is_empty() {
-            return names.quasi_velocity(&format!("{name}'"));
+        match document.kinematics.iter().find(|entry| entry.name.text == *name) {
+            Some(entry) => names.resolve(&entry.expression.ast),
+            None => names.quasi_velocity(&format!("{name}'")),
         }
-        let entry = document.kinematics.iter().find(|entry| entry.name.text == *name);
-        let entry = entry.ok_or_else(|| Unable::UnknownName { name: format!("{name}'") })?;
-        names.resolve(&entry.expression.ast)
     };
     Ok(Velocities::Quasi(names.coordinates.iter().map(rate).collect::<Result<_, _>>()?))
 }

@@ -1,7 +1,7 @@
 //! Bodies on joints, as terms: their positions, their rotations, and the rates of the joints' coordinates.
 //!
 //! A body has thirty definitions: the constant rotation of its joint, the rotation by the joint, its own
-//! rotation, and its position; a point has three, and so has the place where a body touches a plane. These definitions follow the constant definitions of the
+//! rotation, and its position; a point has three, and so has the place where a body touches the ground, of which uneven ground has six more. These definitions follow the constant definitions of the
 //! text, which joints may contain, and precede the others, which may contain points.
 
 use std::collections::HashSet;
@@ -15,6 +15,7 @@ use pc_model::document::{
 use crate::error::Unable;
 use crate::text::body::{Body, Turning, matrix};
 use crate::text::contacts::Touching;
+use crate::text::ground;
 use crate::text::names::Names;
 use crate::text::term::{Function, Term};
 
@@ -96,6 +97,7 @@ impl<'a> Tree<'a> {
         let points = points.flat_map(|name| std::iter::repeat_n(name, OF_POINT));
         let own = bodies.map(|name| format!("the body {name}"));
         let own = own.chain(points.map(|name| format!("the point {name}")));
+        let own = own.chain(ground::names(self.document));
         let contacts = self.contacts().map(|(_, contact)| &contact.name.text);
         let contacts = contacts.flat_map(|name| std::iter::repeat_n(name, OF_CONTACT));
         let own = own.chain(contacts.map(|name| format!("the contact {name}")));
@@ -133,6 +135,7 @@ impl<'a> Tree<'a> {
     /// The point of contact of a body on a joint, for the contact with this number.
     pub(crate) fn point_of_contact(&self, number: usize) -> Vec<Term> {
         let before = OF_BODY * self.document.tree.len() + OF_POINT * self.document.points.len();
+        let before = before + ground::names(self.document).len();
         let place = self.contacts().position(|(own, _)| own == number).unwrap_or(0); // is among them
         let first = self.constant + before + OF_CONTACT * place;
         (first..first + OF_CONTACT).map(Term::Definition).collect()
@@ -180,6 +183,7 @@ impl<'a> Tree<'a> {
             let (rotation, origin) = self.placement(place_of(self.document, point.body()));
             all.extend(added(&origin, &turned(&rotation, &vector(point.at.as_ref(), names)?)));
         }
+        all.extend(ground::definitions(self.document, names)?);
         for (_, contact) in self.contacts() {
             let touching = self.placed(&contact.body.value).map(|at| Touching::of(contact, names, at));
             all.extend(touching.map_or(Ok(Vec::new()), |touching| touching.point())?);

@@ -18,6 +18,9 @@ pub(crate) enum Error {
     /// A model was refused.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// A robot was refused.
+    #[error("the robot was refused: {cause}")]
+    Robot { cause: String },
     /// A system was refused.
     #[error(transparent)]
     Mech(#[from] MechError),

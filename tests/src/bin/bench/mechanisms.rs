@@ -106,7 +106,15 @@ pub(crate) fn loops(report: &mut Report) -> Result<(), Error> {
         ("Stewart's platform", builtin("stewart-platform")?),
     ];
     report.line("");
-    report.columns(&["loops", "whole matrix, ns", "by joints, ns", "/ whole", "chosen, ns"]);
+    report.columns(&[
+        "loops",
+        "whole matrix, ns",
+        "by joints, ns",
+        "/ whole",
+        "chosen, ns",
+        "J, µs",
+        "f a column",
+    ]);
     for (name, document) in mechanisms {
         let model = Model::new(document);
         let graph = model.graph();
@@ -131,6 +139,17 @@ pub(crate) fn loops(report: &mut Report) -> Result<(), Error> {
             };
             variants.push(Variant::new(name, Box::new(call)));
         }
+        let mut with_jacobian = held.compile()?;
+        let n = assembly.start.len();
+        let mut entries = vec![0.0; n * n];
+        with_jacobian.jacobian(assembly.t_start, &assembly.start, &mut entries)?;
+        let jacobian = move |y: &[f64], dy: &mut [f64]| {
+            if with_jacobian.jacobian(0.0, y, &mut entries).is_err() {
+                entries.fill(0.0);
+            }
+            dy.copy_from_slice(&entries[entries.len() - dy.len()..]);
+        };
+        variants.push(Variant::new("J", Box::new(jacobian)));
         let times = interleave(&assembly.start, &mut variants);
         report.row(&[
             name.to_owned(),
@@ -138,6 +157,8 @@ pub(crate) fn loops(report: &mut Report) -> Result<(), Error> {
             format!("{:.0}", times[1].median()),
             format!("{:.2}", times[1].ratio_to(&times[0])),
             format!("{:.0}", times[2].median()),
+            format!("{:.1}", times[3].median() / 1e3),
+            format!("{:.2}", times[3].ratio_to(&times[2]) / n as f64),
         ]);
     }
     Ok(())

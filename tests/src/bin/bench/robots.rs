@@ -2,7 +2,11 @@
 
 use std::time::Instant;
 
-use pc_mech::{CompileOptions, Expr, Graph, Joint, MechError, System, Tree, TreeBody, VectorField};
+use pc_mech::{
+    CompileOptions, Equations, Expr, Graph, Joint, MechError, System, Tree, TreeBody, VectorField,
+};
+use pc_model::import::model_of_urdf;
+use pc_model::{Document, Model, Source};
 use pc_tests::classical::SplitMix64;
 
 use crate::error::Error;
@@ -101,8 +105,8 @@ impl Robot {
 
 fn robots() -> Vec<Robot> {
     let arm = |name, goal| Robot::new(name, false, goal).chain(0, 6);
-    let panda = arm("arm of 7 with a gripper that mimics", "1050 operations, 0.1 s");
-    let tip = panda.tip();
+    let with_gripper = arm("arm of 7 with a gripper that mimics", "");
+    let tip = with_gripper.tip();
     let hand = arm("arm of 7 with a hand, 34 joints mimic", "2 s");
     let palm = hand.tip();
     let legs =
@@ -111,7 +115,7 @@ fn robots() -> Vec<Robot> {
     let chest = humanoid.tip();
     vec![
         arm("arm of 7", ""),
-        panda.gripper(tip, true),
+        with_gripper.gripper(tip, true),
         (0..34).fold(hand, |hand, _| hand.gripper(palm, false)),
         legs(Robot::new("quadruped of 12 joints", true, ""), 4, 3),
         humanoid.chain(chest, 7).chain(chest, 7).chain(chest, 1),
@@ -137,60 +141,84 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Error> {
         "f a column",
         "goal",
     ]);
+    let begun = Instant::now();
+    let graph = Graph::new();
+    let equations = panda_like(&graph)?;
+    report_row(report, ("arm7_gripper.urdf of the zoo", "1050 operations, 0.1 s"), begun, &equations, false)?;
     for robot in robots() {
         let begun = Instant::now();
         let graph = Graph::new();
-        let system = robot.system(&graph)?;
-        let k = system.quasi_velocities().len();
-        let equations = system.poincare()?;
-        let mut motion = equations.compile_for(CompileOptions::default().jacobian(false))?;
-        let operations = motion.cost().total();
-        let mut random = SplitMix64::new(7);
-        let n = motion.names().len();
-        let mut state: Vec<f64> = (0..n).map(|_| random.uniform(-0.5, 0.5)).collect();
-        if robot.floats {
-            state[3..7].copy_from_slice(&[0.5; 4]);
-        }
-        motion.rhs(0.0, &state, &mut vec![0.0; n])?;
-        let derived = begun.elapsed().as_secs_f64();
-        let mut with_jacobian = equations.compile()?;
-        let begun = Instant::now();
-        with_jacobian.jacobian(0.0, &state, &mut vec![0.0; n * n])?;
-        let first = begun.elapsed().as_secs_f64();
-        let mut entries = vec![0.0; n * n];
-        let mut variants = vec![
-            Variant::new(
-                "f",
-                Box::new(move |y: &[f64], dy: &mut [f64]| {
-                    if motion.rhs(0.0, y, dy).is_err() {
-                        dy.fill(0.0);
-                    }
-                }),
-            ),
-            Variant::new(
-                "J",
-                Box::new(move |y: &[f64], dy: &mut [f64]| {
-                    if with_jacobian.jacobian(0.0, y, &mut entries).is_err() {
-                        entries.fill(0.0);
-                    }
-                    dy.copy_from_slice(&entries[entries.len() - dy.len()..]);
-                }),
-            ),
-        ];
-        let times = interleave(&state, &mut variants);
-        let ratio = times[1].ratio_to(&times[0]);
-        report.row(&[
-            robot.name.to_owned(),
-            k.to_string(),
-            operations.to_string(),
-            format!("{derived:.2}"),
-            format!("{first:.2}"),
-            format!("{:.2}", times[0].median() / 1e3),
-            format!("{:.1}", times[1].median() / 1e3),
-            format!("{ratio:.0}"),
-            format!("{:.2}", ratio / n as f64),
-            robot.goal.to_owned(),
-        ]);
+        let equations = robot.system(&graph)?.poincare()?;
+        report_row(report, (robot.name, robot.goal), begun, &equations, robot.floats)?;
     }
+    Ok(())
+}
+
+/// An arm of seven axes with inertias as a CAD program gives them, and a gripper whose second finger mimics the first.
+fn panda_like(graph: &Graph) -> Result<Equations<'_>, Error> {
+    let source = Source::new("arm7_gripper.urdf", include_str!("../../../zoo/arm7_gripper.urdf"));
+    let (text, _) =
+        model_of_urdf(&source, false).map_err(|error| Error::Robot { cause: error.to_string() })?;
+    let model = Model::new(Document::parse(Source::new("arm7_gripper.toml", &text))?);
+    Ok(model.assemble(graph)?.equations()?)
+}
+
+/// Times the rates and the Jacobian of a robot and adds them to the table; `begun` is when its derivation began.
+fn report_row(
+    report: &mut Report,
+    (name, goal): (&str, &str),
+    begun: Instant,
+    equations: &Equations<'_>,
+    floats: bool,
+) -> Result<(), Error> {
+    let k = equations.system().quasi_velocities().len();
+    let mut motion = equations.compile_for(CompileOptions::default().jacobian(false))?;
+    let operations = motion.cost().total();
+    let mut random = SplitMix64::new(7);
+    let n = motion.names().len();
+    let mut state: Vec<f64> = (0..n).map(|_| random.uniform(-0.5, 0.5)).collect();
+    if floats {
+        state[3..7].copy_from_slice(&[0.5; 4]);
+    }
+    motion.rhs(0.0, &state, &mut vec![0.0; n])?;
+    let derived = begun.elapsed().as_secs_f64();
+    let mut with_jacobian = equations.compile()?;
+    let begun = Instant::now();
+    with_jacobian.jacobian(0.0, &state, &mut vec![0.0; n * n])?;
+    let first = begun.elapsed().as_secs_f64();
+    let mut entries = vec![0.0; n * n];
+    let mut variants = vec![
+        Variant::new(
+            "f",
+            Box::new(move |y: &[f64], dy: &mut [f64]| {
+                if motion.rhs(0.0, y, dy).is_err() {
+                    dy.fill(0.0);
+                }
+            }),
+        ),
+        Variant::new(
+            "J",
+            Box::new(move |y: &[f64], dy: &mut [f64]| {
+                if with_jacobian.jacobian(0.0, y, &mut entries).is_err() {
+                    entries.fill(0.0);
+                }
+                dy.copy_from_slice(&entries[entries.len() - dy.len()..]);
+            }),
+        ),
+    ];
+    let times = interleave(&state, &mut variants);
+    let ratio = times[1].ratio_to(&times[0]);
+    report.row(&[
+        name.to_owned(),
+        k.to_string(),
+        operations.to_string(),
+        format!("{derived:.2}"),
+        format!("{first:.2}"),
+        format!("{:.2}", times[0].median() / 1e3),
+        format!("{:.1}", times[1].median() / 1e3),
+        format!("{ratio:.0}"),
+        format!("{:.2}", ratio / n as f64),
+        goal.to_owned(),
+    ]);
     Ok(())
 }

@@ -67,8 +67,10 @@ impl Body {
             Kind::Revolute | Kind::Prismatic | Kind::Screw => return vec![self.name.clone()],
             Kind::Cylindrical => vec!["z", "φ"],
             Kind::Universal => vec!["1", "2"],
-            // Those of its plane, whatever they are in space.
-            Kind::Planar => vec!["x", "y", "φ"],
+            Kind::Planar => {
+                let axes = ["x", "y", "z"];
+                vec![axes[(self.normal() + 1) % 3], axes[(self.normal() + 2) % 3], "φ"]
+            }
             Kind::Spherical => quaternion.to_vec(),
             Kind::Free => [&["x", "y", "z"][..], &quaternion].concat(),
         };

@@ -228,12 +228,12 @@ class Builder(Generic[M]):
         return self._table("loops", name, entries)
 
     def contact(self, name: str, body: str, shape: str, motion: str, **entries: Any) -> Builder[M]:
-        """A contact of a body with a plane: a ``"disc"``, a ``"sphere"`` or an ``"ellipsoid"`` that ``"rolls"`` or ``"slides"``.
+        """A contact of a body with the ground: a ``"disc"``, a ``"sphere"`` or an ``"ellipsoid"`` that ``"rolls"`` or ``"slides"``.
 
         Parameters
         ----------
         **entries
-            ``radius``, ``axis``, ``semi_axes``, ``at``, ``normal``, … as in ``[contacts.NAME]`` of a text.
+            ``radius``, ``axis``, ``semi_axes``, ``at``, ``normal``, ``height``, … as in ``[contacts.NAME]`` of a text.
         """
         return self._table("contacts", name, {"body": body, "shape": shape, "motion": motion, **entries})
 
