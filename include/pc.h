@@ -1338,9 +1338,9 @@ pc_status pc_model_set_loop_length(pc_model *model,
                                    pc_error **error);
 
 /**
- * Adds a contact of a body with a plane. The shape is disc, sphere or ellipsoid, and the motion
- * rolls or slides. pc_model_set_contact sets the size of the shape, and what else the text may
- * say.
+ * Adds a contact of a body with a plane or uneven ground. The shape is disc, sphere or ellipsoid,
+ * and the motion rolls or slides. pc_model_set_contact sets the size of the shape, and what else
+ * the text may say.
  */
 pc_status pc_model_add_contact(pc_model *model,
                                const char *name,
@@ -1350,9 +1350,9 @@ pc_status pc_model_add_contact(pc_model *model,
                                pc_error **error);
 
 /**
- * Sets an entry of a contact: radius, with 1 value; axis, semi_axes, at, normal or through, with
- * 3; attitude, with 9; keeps, with the value true. The values are expressions, those of an axis
- * numbers.
+ * Sets an entry of a contact: radius or height, with 1 value; axis, semi_axes, at, normal or
+ * through, with 3; attitude, with 9; keeps, with the value true. The values are expressions,
+ * those of an axis numbers.
  */
 pc_status pc_model_set_contact(pc_model *model,
                                const char *name,

@@ -304,7 +304,7 @@ public:
     {
         return say(pc_model_set_loop_length, name.c_str(), length.c_str());
     }
-    /// Adds a contact of a body with a plane.
+    /// Adds a contact of a body with a plane or uneven ground.
     model &contact(const std::string &name, const std::string &body, const std::string &shape,
                    const std::string &motion)
     {

@@ -473,9 +473,9 @@ pub unsafe extern "C" fn pc_model_set_loop_length(
     unsafe { draft(model, error, "pc_model_set_loop_length", write) }
 }
 
-/// Adds a contact of a body with a plane or uneven ground. The shape is disc, sphere or ellipsoid, and the motion
-/// rolls or slides. pc_model_set_contact sets the size of the shape, and what else the text may
-/// say.
+/// Adds a contact of a body with a plane or uneven ground. The shape is disc, sphere or ellipsoid,
+/// and the motion rolls or slides. pc_model_set_contact sets the size of the shape, and what else
+/// the text may say.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_contact(
     model: *mut pc_model,

@@ -368,6 +368,23 @@ fn contacts_reach_the_text() {
     assert!(x, "{rates:?}");
 }
 
+/// A height is an expression, and its coordinate starts below the ball.
+#[test]
+fn heights_of_contacts_reach_the_text() {
+    let model = empty("A ball on a slope");
+    say!(model, pc_model_add_jointed_body, "ball", "world", "planar").unwrap();
+    say!(model, pc_model_set_joint_axis, "ball"; [0.0, 1.0, 0.0].as_ptr()).unwrap();
+    say!(model, pc_model_set_body_mass, "ball", "2").unwrap();
+    list(&model, pc_model_set_body_inertia, "ball", &["0.008", "0.008", "0.008"]).unwrap();
+    say!(model, pc_model_add_coordinate, "ball_x"; 0.1 / 0.3f64.cos()).unwrap();
+    say!(model, pc_model_add_contact, "slope", "ball", "sphere", "rolls").unwrap();
+    touching(&model, "slope", "radius", &["0.1"]).unwrap();
+    touching(&model, "slope", "height", &["-tan(0.3)*slope_x"]).unwrap();
+    assert!(text(&model).contains("\"slope\".\"height\" = \"-tan(0.3)*slope_x\""));
+    let y = start(&model);
+    assert!(y.iter().any(|value| (value + 0.1 * 0.3f64.sin()).abs() < 1e-12), "{y:?}");
+}
+
 fn start(model: &Model) -> Vec<f64> {
     model.system(PC_POINCARE).unwrap().start().1
 }

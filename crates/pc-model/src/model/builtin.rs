@@ -105,6 +105,7 @@ pub const CLASSICS: &[Builtin] = models![
     "whipple-bicycle",
     "rattleback",
     "rolling-spheroid",
+    "disk-on-bumps",
 ];
 
 impl Builtin {

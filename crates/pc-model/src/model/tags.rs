@@ -109,6 +109,7 @@ pub const TAGS: &[Tag] = &[
             "whipple-bicycle",
             "rattleback",
             "rolling-spheroid",
+            "disk-on-bumps",
         ],
     },
     Tag {
@@ -157,6 +158,7 @@ pub const TAGS: &[Tag] = &[
             "whipple-bicycle",
             "rattleback",
             "rolling-spheroid",
+            "disk-on-bumps",
         ],
     },
     Tag {
@@ -217,6 +219,7 @@ pub const TAGS: &[Tag] = &[
             "satellite",
             "quadruped",
             "stewart-platform",
+            "disk-on-bumps",
         ],
     },
     Tag {
