@@ -308,7 +308,7 @@ fn names_made_of_others_are_not_taken() {
     assert!(left_out.is_empty(), "{left_out:?}");
     assert_eq!(
         flow(&text).motion.names()[..5],
-        ["l__x", "l__y", "l__φ", "l_x", "l_x_damping"].map(str::to_owned)
+        ["l__z", "l__x", "l__φ", "l_x", "l_x_damping"].map(str::to_owned)
     );
     assert!(text.contains("damping = \"l_x_damping_\""), "{text}");
 }

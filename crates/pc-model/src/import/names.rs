@@ -7,9 +7,12 @@ use pc_expr::parse::{FUNCTIONS, is_name};
 use crate::import::massless::Order;
 use crate::import::robot::{Actuator, Joint, Kind, Robot, WORLD};
 
-/// The endings of the names of a body's coordinates and velocities, if its joint has several coordinates.
-fn endings(kind: Kind) -> (&'static [&'static str], &'static [&'static str]) {
+/// The endings of the names of a body's coordinates and velocities, if its joint has several coordinates. A planar joint
+/// slides along the two axes that follow its normal.
+fn endings(kind: Kind, axis: [f64; 3]) -> (&'static [&'static str], &'static [&'static str]) {
     match kind {
+        Kind::Planar if axis[0] != 0.0 => (&["y", "z", "φ"], &["y'", "z'", "φ'"]),
+        Kind::Planar if axis[1] != 0.0 => (&["z", "x", "φ"], &["z'", "x'", "φ'"]),
         Kind::Planar => (&["x", "y", "φ"], &["x'", "y'", "φ'"]),
         Kind::Universal => (&["1", "2"], &["1'", "2'"]),
         Kind::Spherical => (&["q0", "q1", "q2", "q3"], &["ω1", "ω2", "ω3"]),
@@ -55,9 +58,12 @@ impl<'a> Names<'a> {
                 bodies.insert(link.name.as_str(), WORLD.to_owned());
                 continue;
             }
-            let kind =
-                if place == 0 { Kind::Floating } else { joint.map_or(Kind::Fixed, |joint| joint.kind) };
-            let (coordinates, velocities) = endings(kind);
+            let (kind, axis) = match joint {
+                _ if place == 0 => (Kind::Floating, [0.0; 3]),
+                Some(joint) => (joint.kind, joint.axis),
+                None => (Kind::Fixed, [0.0; 3]),
+            };
+            let (coordinates, velocities) = endings(kind, axis);
             let label = match coordinates {
                 [] => unused(&link.name, &[], &mut [&mut labels]),
                 _ => unused(&link.name, &[coordinates, velocities].concat(), &mut [&mut labels, &mut taken]),
@@ -125,7 +131,8 @@ impl<'a> Names<'a> {
             Some(x) => vec![format!("{x}'")],
             None => {
                 let body = self.body(&joint.child);
-                endings(joint.kind).1.iter().map(|velocity| format!("{body}_{velocity}")).collect()
+                let (_, velocities) = endings(joint.kind, joint.axis);
+                velocities.iter().map(|velocity| format!("{body}_{velocity}")).collect()
             }
         }
     }
