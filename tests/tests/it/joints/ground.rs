@@ -270,9 +270,7 @@ fn heights_shorten_texts() {
         for line in text.lines().filter(|line| !line.is_empty()) {
             section = if line.starts_with('[') { line } else { section };
             lines += usize::from(
-                !line.starts_with('[')
-                    && wanted.iter().any(|name| section == *name)
-                    && line.contains(['*', '/', '+']),
+                !line.starts_with('[') && wanted.contains(&section) && line.contains(['*', '/', '+']),
             );
         }
         lines
