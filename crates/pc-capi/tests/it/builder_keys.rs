@@ -188,6 +188,7 @@ fn everything() -> Model {
         ("attitude", &["1", "0", "0", "0", "1", "0", "0", "0", "1"]),
         ("normal", &["0", "0", "m"]),
         ("through", &["0", "m", "0"]),
+        ("height", &["m"]),
         ("keeps", &["true"]),
     ] {
         touching(&model, "ground", entry, values).unwrap();
