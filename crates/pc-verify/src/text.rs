@@ -1,8 +1,9 @@
 //! The text of a model, read a second time.
 //!
-//! With its `names`, a syntax tree is turned into a `term`, and all terms form the `text`, with bodies (`body`), bodies on joints (`tree`), and the
+//! With its `names`, a syntax tree is turned into a `term` (`arithmetic` adds and multiplies terms), and all terms form the `text`, with bodies (`body`), bodies on joints (`tree`), and the
 //! reactions on them (`resultant`); `contacts` finds where they touch the ground (`ground`, with the `slope` of its height), `contacts_by_name` what the text calls this; `momentum` holds what bodies have as they move; `couplings` says which velocities occur together.
 
+pub(crate) mod arithmetic;
 pub(crate) mod body;
 pub(crate) mod contacts;
 pub(crate) mod contacts_by_name;

@@ -347,7 +347,7 @@ fn joints_reach_the_text() {
     assert_eq!(refusal.message, "each axis needs one angle: there are 3 axes and 1 angles");
 }
 
-/// A ball that rolls down a slope without slipping, (5/7) g sin s along it. The first slide of its joint is along z.
+/// A ball that rolls down a slope without slipping, (5/7) g sin s along it.
 #[test]
 fn contacts_reach_the_text() {
     let model = empty("A ball on a slope");
@@ -356,7 +356,7 @@ fn contacts_reach_the_text() {
     say!(model, pc_model_set_joint_axis, "ball"; [0.0, 1.0, 0.0].as_ptr()).unwrap();
     say!(model, pc_model_set_body_mass, "ball", "2").unwrap();
     list(&model, pc_model_set_body_inertia, "ball", &["0.008", "0.008", "0.008"]).unwrap();
-    say!(model, pc_model_add_coordinate, "ball_x"; 0.1 / 0.3f64.cos()).unwrap();
+    say!(model, pc_model_add_coordinate, "ball_z"; 0.1 / 0.3f64.cos()).unwrap();
     say!(model, pc_model_add_contact, "slope", "ball", "sphere", "rolls").unwrap();
     touching(&model, "slope", "radius", &["0.1"]).unwrap();
     touching(&model, "slope", "normal", &["sin(0.3)", "0", "cos(0.3)"]).unwrap();
@@ -377,7 +377,7 @@ fn heights_of_contacts_reach_the_text() {
     say!(model, pc_model_set_joint_axis, "ball"; [0.0, 1.0, 0.0].as_ptr()).unwrap();
     say!(model, pc_model_set_body_mass, "ball", "2").unwrap();
     list(&model, pc_model_set_body_inertia, "ball", &["0.008", "0.008", "0.008"]).unwrap();
-    say!(model, pc_model_add_coordinate, "ball_x"; 0.1 / 0.3f64.cos()).unwrap();
+    say!(model, pc_model_add_coordinate, "ball_z"; 0.1 / 0.3f64.cos()).unwrap();
     say!(model, pc_model_add_contact, "slope", "ball", "sphere", "rolls").unwrap();
     touching(&model, "slope", "radius", &["0.1"]).unwrap();
     touching(&model, "slope", "height", &["-tan(0.3)*slope_x"]).unwrap();

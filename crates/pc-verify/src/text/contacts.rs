@@ -12,9 +12,12 @@
 use pc_model::document::{Contact, ContactShape, Document, Expression, Orientation};
 
 use crate::error::Unable;
+use crate::text::arithmetic::{
+    added, cross, difference, dot, negative, quotient, rates, root, sum, times, unit,
+};
 use crate::text::ground::Ground;
 use crate::text::names::Names;
-use crate::text::term::{Function, Term};
+use crate::text::term::Term;
 
 /// A contact of a body whose place and attitude are these terms.
 pub(crate) struct Touching<'a> {
@@ -190,75 +193,4 @@ impl<'a> Touching<'a> {
     fn arm(&self, point: &[Term], from: &[Term]) -> Vec<Term> {
         point.iter().zip(from).map(|(p, c)| difference(p.clone(), c.clone())).collect()
     }
-}
-
-fn is(term: &Term, value: f64) -> bool {
-    matches!(term, Term::Number(number) if *number == value)
-}
-
-fn unit(axis: usize) -> Vec<Term> {
-    (0..3).map(|i| Term::Number(f64::from(u8::from(i == axis)))).collect()
-}
-
-pub(super) fn times<const N: usize>(factors: [&Term; N]) -> Term {
-    if factors.iter().any(|factor| is(factor, 0.0)) {
-        return Term::Number(0.0);
-    }
-    let mut factors: Vec<(bool, Term)> =
-        factors.into_iter().filter(|factor| !is(factor, 1.0)).map(|factor| (false, factor.clone())).collect();
-    match factors.len() {
-        0 => Term::Number(1.0),
-        1 => factors.remove(0).1,
-        _ => Term::Product(factors),
-    }
-}
-
-pub(super) fn quotient(term: Term, by: &Term) -> Term {
-    if is(&term, 0.0) || is(by, 1.0) { term } else { Term::Product(vec![(false, term), (true, by.clone())]) }
-}
-
-pub(super) fn sum(terms: Vec<Term>) -> Term {
-    let mut terms: Vec<(bool, Term)> =
-        terms.into_iter().filter(|term| !is(term, 0.0)).map(|term| (false, term)).collect();
-    match terms.len() {
-        0 => Term::Number(0.0),
-        1 => terms.remove(0).1,
-        _ => Term::Sum(terms),
-    }
-}
-
-pub(super) fn negative(term: Term) -> Term {
-    if is(&term, 0.0) { term } else { Term::Negative(Box::new(term)) }
-}
-
-pub(super) fn difference(a: Term, b: Term) -> Term {
-    match (is(&a, 0.0), is(&b, 0.0)) {
-        (_, true) => a,
-        (true, false) => negative(b),
-        (false, false) => Term::Sum(vec![(false, a), (true, b)]),
-    }
-}
-
-pub(super) fn root(term: Term) -> Term {
-    if is(&term, 1.0) { term } else { Term::Call(Function::Sqrt, vec![term]) }
-}
-
-pub(super) fn dot(a: &[Term], b: &[Term]) -> Term {
-    sum(a.iter().zip(b).map(|(a, b)| times([a, b])).collect())
-}
-
-fn added(a: &[Term], b: &[Term]) -> Vec<Term> {
-    a.iter().zip(b).map(|(a, b)| sum(vec![a.clone(), b.clone()])).collect()
-}
-
-fn rates(terms: &[Term]) -> Vec<Term> {
-    let rate = |term: &Term| match term {
-        Term::Number(_) => Term::Number(0.0),
-        term => Term::Rate(Box::new(term.clone())),
-    };
-    terms.iter().map(rate).collect()
-}
-
-fn cross(a: &[Term], b: &[Term]) -> Vec<Term> {
-    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| difference(times([&a[i], &b[j]]), times([&a[j], &b[i]]))).to_vec()
 }

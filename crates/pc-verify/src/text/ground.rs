@@ -5,7 +5,7 @@
 use pc_model::document::{Contact, Document};
 
 use crate::error::Unable;
-use crate::text::contacts::{dot, negative, quotient, root};
+use crate::text::arithmetic::{dot, negative, quotient, root};
 use crate::text::names::Names;
 use crate::text::slope::slope;
 use crate::text::term::Term;

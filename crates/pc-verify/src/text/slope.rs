@@ -1,6 +1,6 @@
 //! Derivatives of terms with respect to a coordinate.
 
-use crate::text::contacts::{difference, negative, quotient, root, sum, times};
+use crate::text::arithmetic::{difference, negative, quotient, root, sum, times};
 use crate::text::names::Declared;
 use crate::text::term::{Function, Term};
 

@@ -141,7 +141,8 @@ class Universal(Joint):
 
 @dataclass(frozen=True, kw_only=True)
 class Planar(Joint):
-    """The body slides along the two axes that follow the normal ``axis``, and turns about it: ``NAME_x``, ``NAME_y``, ``NAME_φ``."""
+    """The body slides along the two axes that follow the normal ``axis``, and turns about it: ``NAME_x``, ``NAME_y``, ``NAME_φ``
+    for the normal z, ``NAME_z``, ``NAME_x``, ``NAME_φ`` for y."""
 
     kind = "planar"
     axis: Sequence[Any]
