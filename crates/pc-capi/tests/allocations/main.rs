@@ -172,7 +172,10 @@ fn evaluations_allocate_nothing() {
                 note("body", again(of_body));
             }
             let w = product[..k].as_mut_ptr();
-            note("solve_mass", again(|e| pc_system_solve_mass_matrix(s, t, yp, n, v, k, w, k, e)));
+            // A point of contact has no mass: M alone is singular.
+            if case.0 != "disk-on-bumps" {
+                note("solve_mass", again(|e| pc_system_solve_mass_matrix(s, t, yp, n, v, k, w, k, e)));
+            }
             if on_nothing && !has_tables {
                 note("time", again(|e| pc_system_time_derivative(s, t, yp, n, product.as_mut_ptr(), n, e)));
             }
