@@ -181,7 +181,7 @@ def test_bodies_on_joints_are_those_of_a_text() -> None:
 
 
 def test_contacts_are_those_of_a_text() -> None:
-    builder = chetaev.Model.builder("slope").gravity([0, 0, -9.81]).coordinate("ball_x", "0.1/cos(0.3)")
+    builder = chetaev.Model.builder("slope").gravity([0, 0, -9.81]).coordinate("ball_z", "0.1/cos(0.3)")
     builder = builder.body("ball", joint=chetaev.Planar(axis=[0, 1, 0]), mass=2.0, inertia=[0, 0.008, 0])
     builder = builder.contact(
         "slope", "ball", "sphere", "rolls", radius=0.1, normal=["sin(0.3)", 0, "cos(0.3)"], keeps=True
