@@ -190,7 +190,7 @@ def test_contacts_are_those_of_a_text() -> None:
     motion = builder.simulation(t_end=1.0).build().system().run()
     # The slides of the joint are along z and x. It accelerates at (5/7) g sin s along the slope, and the ball weighs m g cos s on it.
     along = 5 / 14 * 9.81 * np.sin(0.3)
-    assert motion["ball_y"][-1] == pytest.approx(along * np.cos(0.3), rel=1e-9)
+    assert motion["ball_x"][-1] == pytest.approx(along * np.cos(0.3), rel=1e-9)
     assert motion["N_slope"] == pytest.approx(2 * 9.81 * np.cos(0.3), rel=1e-9)
 
 
