@@ -379,3 +379,26 @@ fn forms_in_momenta_are_refused() {
         "{said}"
     );
 }
+
+/// Stops that no motion could hold are refused; without them, the blocks would go through their ends.
+#[test]
+fn more_stops_than_a_motion_can_hold_are_refused() {
+    let mut text = String::new();
+    for i in 0..70 {
+        writeln!(
+            text,
+            "[bodies.b{i}]\nmass = 1\n\
+             joint = {{ kind = \"prismatic\", axis = [1, 0, 0], limits = [0, 1], restitution = 0.5 }}"
+        )
+        .unwrap();
+    }
+    let (code, said, written) = told(&text, &["--t-end", "1"]);
+    assert_eq!((code, written), (Some(4), None), "{said}");
+    let said = said.split_once("m.toml:").unwrap().1;
+    assert_eq!(
+        said,
+        "1:1: [bodies.b0]: dry friction and rigid stops of the joints make 280 surfaces on which a motion can stay; the most \
+         that are followed at a time are 256\n    [bodies.b0]\n    ^^^^^^^^^^^\n  \
+         help: give fewer joints friction or rigid stops; stops with `stop_stiffness` need no surfaces to stay on\n"
+    );
+}

@@ -11,19 +11,27 @@ const MODEL: &str = "[coordinates]\nx = 1.0\n[inputs]\nu = { file = \"u.csv\", c
                      [lagrangian]\nkinetic = \"x'^2/2\"\n[forces]\nx = \"u\"\n[simulation]\nt_end = 1\n";
 const TABLE: &str = "t,u\n0,1\n2,3\n";
 
-/// The exit code and the first line of what is said.
+/// The exit code and the error, or else the first line of what is said.
 fn pc(directory: &Path, command: &str) -> (i32, String) {
     let mut pc = Command::new(env!("CARGO_BIN_EXE_pc"));
     let done = pc.args(command.split(' ')).current_dir(directory).stdin(Stdio::null()).output().unwrap();
     let said = String::from_utf8(done.stderr).unwrap();
-    (done.status.code().unwrap(), said.lines().next().unwrap_or_default().to_owned())
+    let error = said.lines().find(|line| line.starts_with("pc: ")).or(said.lines().next());
+    (done.status.code().unwrap(), error.unwrap_or_default().to_owned())
 }
 
 #[test]
 fn what_is_read_is_not_replaced() {
     let directory = tempfile::tempdir().unwrap();
     let at = |name: &str| directory.path().join(name);
-    for (name, text) in [("m.toml", MODEL), ("m.csv", MODEL), ("m.html", MODEL), ("u.csv", TABLE)] {
+    for (name, text) in [
+        ("m.toml", MODEL),
+        ("m.csv", MODEL),
+        ("m.html", MODEL),
+        ("u.csv", TABLE),
+        ("m.fmu", MODEL),
+        ("m.rs", MODEL),
+    ] {
         fs::write(at(name), text).unwrap();
     }
     symlink("u.csv", at("link.csv")).unwrap();
@@ -42,6 +50,9 @@ fn what_is_read_is_not_replaced() {
         ("animate m.html -o m.html", "m.html", "m.html"),
         ("import u.csv -o link.csv", "link.csv", "u.csv"),
         ("export m.toml -o twin.csv", "twin.csv", "u.csv"),
+        ("merge u.csv -o link.csv", "link.csv", "u.csv"),
+        ("emit ./m.fmu --fmu 2 -o m.fmu", "m.fmu", "./m.fmu"),
+        ("emit m.rs --lang rust -o .", "./m.rs", "m.rs"),
     ] {
         let (code, said) = pc(directory.path(), command);
         assert_eq!(code, 2, "{command}: {said}");
@@ -55,7 +66,7 @@ fn what_is_read_is_not_replaced() {
         );
     }
     assert_eq!(fs::read_to_string(at("u.csv")).unwrap(), TABLE);
-    for name in ["m.toml", "m.csv", "m.html"] {
+    for name in ["m.toml", "m.csv", "m.html", "m.fmu", "m.rs"] {
         assert_eq!(fs::read_to_string(at(name)).unwrap(), MODEL, "{name}");
     }
 }

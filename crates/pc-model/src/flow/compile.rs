@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use pc_mech::{
-    Canonical, CompileOptions, Equations, EvaluationError, KeptIntegrals, MechError, Motion, Multipliers,
-    Signals, System, VectorField,
+    Canonical, CompileOptions, Equations, EvaluationError, ForceError, KeptIntegrals, MechError, Motion,
+    Multipliers, Signals, System, VectorField,
 };
 
 use crate::assembly::assembly::Assembly;
@@ -139,7 +139,13 @@ impl Model {
         let refuse = |error: &MechError| {
             let is_massless =
                 matches!(error, MechError::Evaluation(EvaluationError::SingularMassMatrix { .. }));
-            let fault = MeaningError::SingularStart { cause: error.to_string(), is_massless };
+            let fault = match error {
+                MechError::Force(ForceError::TooManySurfaces { .. }) => MeaningError::OfJoint {
+                    message: error.to_string(),
+                    help: "give fewer joints friction or rigid stops; stops with `stop_stiffness` need no surfaces to stay on",
+                },
+                _ => MeaningError::SingularStart { cause: error.to_string(), is_massless },
+            };
             self.document().error(&self.document().energy_place(), fault)
         };
         let mut motion = compiled.map_err(|error| refuse(&error))?.driven_by(self.signals());
