@@ -3,7 +3,7 @@
 //! A [`Model`](crate::Model) becomes an [`Assembly`](assembly::Assembly). Read `assembly` first, then `assembler`,
 //! which the parts of the assembly share, and then the parts in the order in which `assemble` uses them:
 //! `parameters` and `tables`, `frame`, `definitions`, `start` with the `points_of_contact`, `bodies`, the `tree` of bodies on joints and
-//! `external_force`, `brackets`, `joint_reactions`, `constraints` with `constraint_treatment`, `body_reactions` and
+//! `external_force`, `brackets`, `joint_reactions`, `friction_of_contacts`, `constraints` with `constraint_treatment`, `body_reactions` and
 //! the names of a `resultant`, `action`, `event` and `events` with the `stops` of joints, and the quasi-velocities `given` in addition to those of the text;
 //! `trial`, `definite`, `inertia` and `orientations` check the start. A `function` and a `drawing` are assembled
 //! separately, on request.
@@ -24,6 +24,7 @@ pub(crate) mod event;
 pub(crate) mod events;
 pub(crate) mod external_force;
 pub(crate) mod frame;
+mod friction_of_contacts;
 pub(crate) mod function;
 pub(crate) mod given;
 mod inertia;

@@ -35,7 +35,7 @@ pub(crate) mod text_map;
 pub(crate) mod tolerance;
 pub(crate) mod tree;
 
-pub use contact::{Contact, ContactShape};
+pub use contact::{Contact, ContactFriction, ContactShape};
 pub use contents::{
     Algebra, AlgebraDefinition, Body, Bracket, Constraint, DeclaredKind, Document, Event, GivenFunction,
     Gravity, HamiltonJacobi, Heading, Input, InputValue, Lagrangian, Orientation, QuasiVelocity, State,

@@ -10,6 +10,16 @@ use crate::constraints::multipliers::Multipliers;
 use crate::error::{ConstraintError, MechError};
 use crate::system::system::System;
 
+/// The reactions as functions of the state.
+pub(super) struct ExplicitReactions<'g> {
+    /// λ
+    pub(super) values: Vec<Expr<'g>>,
+    /// The rows of C M⁻¹.
+    pub(super) pushed: Vec<Vec<Expr<'g>>>,
+    /// C M⁻¹ Cᵀ
+    pub(super) gram: Factors<'g>,
+}
+
 impl<'g> Constraint<'g> {
     /// Whether the reaction of this constraint does no work during the motion: the power of λ ∂g/∂η_s is λ η_s
     /// ∂g/∂η_s, which vanishes with g if it is a multiple of g. By Euler's theorem this holds if g is
@@ -58,6 +68,13 @@ impl<'g> Multipliers<'g> {
     /// [`LagrangianError::Degenerate`](crate::LagrangianError::Degenerate) if M is singular everywhere,
     /// [`ConstraintError::Dependent`] if C M⁻¹ Cᵀ is.
     pub fn reactions_of_state(&self) -> Result<Vec<Expr<'g>>, MechError> {
+        let (graph, reactions) = (self.graph(), self.explicit_reactions()?.values);
+        graph.check(&reactions)?;
+        Ok(graph.shorten(&reactions, &self.equations.system.collecting_order()))
+    }
+
+    /// The solution of these equations for λ, with what it is made of.
+    pub(super) fn explicit_reactions(&self) -> Result<ExplicitReactions<'g>, MechError> {
         let (system, mass, c) = (&self.equations.system, self.equations.mass_matrix(), &self.coefficients);
         let graph = system.graph();
         system.check_regular(mass)?;
@@ -71,9 +88,8 @@ impl<'g> Multipliers<'g> {
         }
         let free = factors.solve(graph, self.equations.right_hand_side());
         let gaps: Vec<Expr<'g>> = (0..c.rows()).map(|a| self.right[a] - dot(&c.row(a), &free)).collect();
-        let reactions = Factors::of(graph, &gram).solve(graph, &gaps);
-        graph.check(&reactions)?;
-        Ok(graph.shorten(&reactions, &system.collecting_order()))
+        let gram = Factors::of(graph, &gram);
+        Ok(ExplicitReactions { values: gram.solve(graph, &gaps), pushed, gram })
     }
 
     /// The name of the first constraint whose row adds nothing to the rank of the rows before it.

@@ -370,11 +370,11 @@ impl<'g> Multipliers<'g> {
         Multipliers { dependent: Some(dependent), ..self.clone() }
     }
 
-    fn graph(&self) -> &'g pc_expr::Graph {
+    pub(super) fn graph(&self) -> &'g pc_expr::Graph {
         self.equations.system.graph()
     }
 
-    fn quasi_velocities(&self) -> &[Expr<'g>] {
+    pub(super) fn quasi_velocities(&self) -> &[Expr<'g>] {
         &self.equations.system.quasi_velocities
     }
 

@@ -29,6 +29,12 @@ pub enum ConstraintError {
         /// Its name.
         constraint: String,
     },
+    /// Friction that jumps, of a body that slides in two directions: where it comes to rest is no surface.
+    #[error("`{constraint}` has friction in two directions, which needs a velocity of creep")]
+    TwoSlips {
+        /// Its name.
+        constraint: String,
+    },
     /// A constraint that, at one state, restricts no velocity that the others leave free.
     #[error(
         "the constraint `{constraint}` restricts no velocity that the others leave free at t = {t}{}",

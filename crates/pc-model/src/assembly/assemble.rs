@@ -221,6 +221,7 @@ impl<'g> Assembler<'g, '_> {
         let system =
             builder.frame(frame).build().map_err(|error| self.model.document().derivation_error(error))?;
         let system = self.with_joint_reactions(system)?;
+        let system = self.with_friction_of_contacts(system, &constraints, &x_dot, &values)?;
         self.check_inputs(&system)?;
         let written_start = self.model.projects_start().then(|| start.clone());
         let constraints =

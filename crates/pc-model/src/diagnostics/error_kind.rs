@@ -131,6 +131,14 @@ pub enum ErrorKind {
         /// What could be written instead of the entry, or in addition to it.
         example: &'static str,
     },
+    /// Dry friction of a contact that has another law.
+    #[error("`{key}` is of contacts that slide and lift off, not of one with `{because}`")]
+    OfSliding {
+        /// The key.
+        key: &'static str,
+        /// The entry beside which it does not make sense.
+        because: &'static str,
+    },
     /// A name that is not that of a body.
     #[error("no body is called `{name}`")]
     NoSuchBody {
@@ -419,6 +427,12 @@ impl ErrorKind {
             Self::NoEffect { key, example, .. } => format!("add `{example}`, or leave `{key}` out"),
             Self::Exclusive { help, .. } => (*help).into(),
             Self::OfOtherJoints { key, example } => format!("write `{example}`, or leave `{key}` out"),
+            Self::OfSliding { because: "keeps = true", .. } => {
+                "leave `keeps` out: N may be negative there, and friction would drive the body".into()
+            }
+            Self::OfSliding { .. } => {
+                "write `motion = \"slides\"`: with friction, the body also rolls where friction suffices".into()
+            }
             Self::OfOtherShapes { key, example } => format!("write `{example}`, or leave `{key}` out"),
             Self::NoSuchBody { known, .. } if known.is_empty() => "declare it in [bodies.NAME]".into(),
             Self::NoSuchBody { name, known } => {

@@ -20,6 +20,8 @@ pub struct Contact {
     pub attitude: Option<Located<Box<[Expression; 9]>>>,
     /// Whether the body rolls; otherwise it slides.
     pub rolls: bool,
+    /// The dry friction of a body that slides.
+    pub friction: Option<ContactFriction>,
     /// The direction out of the plane towards the body, a vector of any length but 0; upwards if left out.
     pub normal: Option<[Expression; 3]>,
     /// A point of the plane; the origin of the fixed axes if left out.
@@ -37,6 +39,15 @@ pub struct Contact {
     /// `NAME_slip_1`, `NAME_slip_2`, the velocity along the ground of the material point of the body there; and on uneven
     /// ground `NAME_off_x`, `NAME_off_y`, how far that point is beside the normal, for each coordinate of the point.
     pub components: Vec<Name>,
+}
+
+/// Dry friction, −μ N s/|s| for the velocity s of slip.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactFriction {
+    /// The coefficient μ.
+    pub coefficient: Expression,
+    /// The velocity c of a smooth friction −μ N s/√(s² + c²).
+    pub creep: Option<Expression>,
 }
 
 /// A convex shape that touches the ground in one point.
@@ -67,6 +78,8 @@ impl Contact {
     pub(crate) const COMMON: usize = Contact::ENDS.len();
     /// The index of the gap among the components; the velocities of slip follow it.
     pub(crate) const GAP: usize = 3;
+    /// The indices of the velocities of slip among the components.
+    pub const SLIPS: [usize; 2] = [4, 5];
 
     /// The ends of the names of its components, for a ground whose height changes along these axes.
     pub(super) fn ends(along: &[usize]) -> impl Iterator<Item = &'static str> {
@@ -98,6 +111,12 @@ impl Contact {
             reactions.extend([1, 2].map(|i| (format!("T_{name}_{i}"), format!("{name}_{i}"))));
         }
         reactions
+    }
+
+    /// The names of the forces of dry friction along the two tangents.
+    pub fn friction_forces(&self) -> Vec<String> {
+        let tangents = if self.friction.is_some() { &[1, 2][..] } else { &[] };
+        tangents.iter().map(|i| format!("T_{}_{i}", self.name.text)).collect()
     }
 
     /// The fixed axis along whose projection onto the plane the first tangent points: the first, unless the normal is

@@ -6,7 +6,7 @@ use super::reader::{Item, Table};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::{ErrorKind, Role};
 use crate::diagnostics::source::Place;
-use crate::document::contact::{Contact, ContactShape};
+use crate::document::contact::{Contact, ContactFriction, ContactShape};
 use crate::document::contents::{Constraint, Document, Event, Orientation, QuasiVelocity};
 use crate::document::expression::{Expression, Located, Name, NamedExpression};
 use crate::document::following::mentions;
@@ -22,6 +22,8 @@ const KEYS: &[&str] = &[
     "at",
     "attitude",
     "motion",
+    "friction",
+    "creep",
     "normal",
     "through",
     "height",
@@ -32,6 +34,7 @@ const SEMI_AXES: &str = "semi_axes = [\"a\", \"b\", \"c\"]";
 const AXIS: &str = "axis = [0, 0, 1]";
 const AT: &str = "at = [0, 0, 0]";
 const NORMAL: &str = "normal = [0, 0, 1]";
+const FRICTION: &str = "friction = \"mu\"";
 const ATTITUDE: &str = "attitude = [1, 0, 0, 0, 1, 0, 0, 0, 1]";
 
 /// The shapes.
@@ -54,6 +57,7 @@ fn contact(item: &Item<'_>) -> Result<Contact, ModelError> {
     let (mut radius, mut axis, mut semi_axes) = (None, None, None);
     let (mut at, mut attitude, mut keeps) = (None, None, None);
     let (mut normal, mut through, mut height) = (None, None, None);
+    let (mut friction, mut creep) = (None, None);
     for part in table.items() {
         match part.key() {
             "body" => body = Some(part.text()?),
@@ -67,6 +71,8 @@ fn contact(item: &Item<'_>) -> Result<Contact, ModelError> {
             "at" => at = Some(part.array("3 expressions", AT)?),
             "attitude" => attitude = Some(part.located(Box::new(part.array("9 expressions", ATTITUDE)?))),
             "motion" => motion = Some(part.choice(&[("rolls", true), ("slides", false)])?.value),
+            "friction" => friction = Some((part.clone(), part.expression()?)),
+            "creep" => creep = Some((part.clone(), part.expression()?)),
             "normal" => normal = Some(part.array("3 expressions", NORMAL)?),
             "through" => through = Some(part.array("3 expressions", "through = [0, 0, 0]")?),
             "height" => height = Some((part.clone(), part.expression()?)),
@@ -108,6 +114,17 @@ fn contact(item: &Item<'_>) -> Result<Contact, ModelError> {
         }));
     }
     let height = height.map(|(_, height)| height);
+    if let (Some((part, _)), Some(true)) = (&friction, motion) {
+        return Err(part.key_error(ErrorKind::OfSliding { key: "friction", because: "motion = \"rolls\"" }));
+    }
+    if let (Some((part, _)), Some(true)) = (&friction, keeps) {
+        return Err(part.key_error(ErrorKind::OfSliding { key: "friction", because: "keeps = true" }));
+    }
+    if let (Some((part, _)), None) = (&creep, &friction) {
+        return Err(part.key_error(ErrorKind::OfOtherShapes { key: "creep".to_owned(), example: FRICTION }));
+    }
+    let creep = creep.map(|(_, creep)| creep);
+    let friction = friction.map(|(_, coefficient)| ContactFriction { coefficient, creep });
     let changes = |axis: &usize| {
         let coordinate = format!("{}_{}", name.text, ["x", "y"][*axis]);
         height.as_ref().is_some_and(|height| mentions(&height.ast, &coordinate))
@@ -123,6 +140,7 @@ fn contact(item: &Item<'_>) -> Result<Contact, ModelError> {
         shape,
         at,
         attitude,
+        friction,
         normal,
         through,
         height,
@@ -178,6 +196,11 @@ pub(super) fn declare(document: &mut Document) -> Result<(), ModelError> {
             let named = |text: String| Name { text, place: place.clone() };
             document.outputs.push(NamedExpression { name: named(force), expression: reaction });
             document.constraints.push(Constraint { name: named(label), expression, kind: None });
+        }
+        for force in contact.friction_forces() {
+            let expression = following(document, force.clone())?;
+            let name = Name { text: force, place: place.clone() };
+            document.outputs.push(NamedExpression { name, expression });
         }
         if !contact.keeps {
             document.events.push(Event {

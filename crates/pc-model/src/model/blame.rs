@@ -58,6 +58,9 @@ impl Document {
                 ConstraintError::Dependent { constraint } => {
                     cannot(&constraint, "leave out what follows from other constraints")
                 }
+                ConstraintError::TwoSlips { constraint } => {
+                    cannot(&constraint, "write `creep = \"v\"`, a velocity far below those of interest")
+                }
                 ConstraintError::Singular { constraint, .. } => {
                     cannot(&constraint, "start where the constraints are independent of each other")
                 }

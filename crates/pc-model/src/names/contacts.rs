@@ -48,6 +48,20 @@ impl<'g, 'd> Scope<'g, 'd> {
         Some(self.graph.symbol(&format!("λ_{constraint}")))
     }
 
+    /// Whether this is a force of dry friction of a contact.
+    pub(super) fn is_friction(&self, name: &str) -> bool {
+        self.document.contacts.iter().flat_map(Contact::friction_forces).any(|force| force == name)
+    }
+
+    /// The two velocities of slip of the contact with this number.
+    pub(crate) fn slips(&mut self, number: usize) -> Result<[Expr<'g>; 2], ModelError> {
+        let mut slips = [Expr::ZERO; 2];
+        for (slip, component) in slips.iter_mut().zip(Contact::SLIPS) {
+            *slip = self.contact(number, component)?.unwrap_or(Expr::ZERO);
+        }
+        Ok(slips)
+    }
+
     /// A component of a contact; `None` if the motion of the body depends on the contact itself.
     pub(super) fn contact(
         &mut self,

@@ -402,6 +402,7 @@ impl<'g, 'd> Scope<'g, 'd> {
             Stage::Observation | Stage::Event if self.reaction_of_contact(name).is_some() => {
                 Ok(self.reaction_of_contact(name).unwrap_or(Expr::ZERO))
             }
+            Stage::Observation if self.is_friction(name) => Ok(self.graph.symbol(name)),
             Stage::Observation if self.is_reaction(name) => Ok(self.graph.symbol(name)),
             Stage::Observation if self.is_resultant(name) => {
                 let symbol = self.graph.symbol(name);
@@ -414,7 +415,7 @@ impl<'g, 'd> Scope<'g, 'd> {
                 Ok(symbol)
             }
             _ if self.is_other(name) => Ok(self.graph.symbol(name)),
-            _ if self.reaction_of_contact(name).is_some() => refuse(self),
+            _ if self.reaction_of_contact(name).is_some() || self.is_friction(name) => refuse(self),
             _ => {
                 if let Some(observed) = self.observed(name) {
                     return match stage {

@@ -19,10 +19,11 @@ use crate::comparison::second::Second;
 use crate::comparison::tolerance::ORDINARY;
 use crate::derivation::derivation::Derivation;
 use crate::derivation::place::{Direction, Place, Virtual};
-use crate::error::Irregular;
+use crate::error::{Irregular, Unable};
 use crate::numbers::linear::{fitting_inverse, matrix, solving_inverse};
 use crate::numbers::rounding::{Random, Rounding, UNIT};
 use crate::numbers::sized::Sized;
+use crate::text::friction::Friction;
 use crate::text::text::Velocities;
 
 /// The number of virtual velocities.
@@ -35,6 +36,8 @@ struct Moving {
     accelerations: Vec<f64>,
     state_rates: Vec<f64>,
     energy: Option<f64>,
+    /// The normal forces of contacts with friction.
+    normal_forces: Vec<f64>,
 }
 
 /// A value that should vanish, with the largest of its terms.
@@ -45,6 +48,8 @@ pub(crate) struct Layout {
     /// The indices, among the rates, of the columns for quasi-velocities.
     columns: Vec<Option<usize>>,
     energy: Option<usize>,
+    /// The indices, among the observables, of the normal forces of contacts with friction.
+    normal_forces: Vec<Option<usize>>,
 }
 
 impl Layout {
@@ -54,6 +59,10 @@ impl Layout {
         let observables = flow.motion.observable_names();
         Layout {
             columns: second.columns.iter().map(|column| place(flow.motion.names(), column)).collect(),
+            normal_forces: (second.derivation.text.frictions.iter())
+                .map(|friction| &second.derivation.text.names.constraints[friction.constraint])
+                .map(|constraint| place(observables, &format!("N_{constraint}")))
+                .collect(),
             energy: observables.iter().position(|name| name == "energy" && !second.has_free_energy),
         }
     }
@@ -72,8 +81,9 @@ impl Derivation {
         let exact = Rounding::none();
         let here = self.moving(flow, layout, at, columns)?;
         let allowed = self.allowed(at)?;
+        let pressed = self.pressed(at)?;
         let names = self.residual_names(&here);
-        let mut all = self.residuals(&here, &allowed, &exact)?;
+        let mut all = self.residuals(&here, &allowed, &pressed, &exact)?;
         if all.iter().all(|residual| residual.value.abs() <= ORDINARY * residual.size) {
             return Ok(names.into_iter().zip(all).collect());
         }
@@ -83,7 +93,9 @@ impl Derivation {
             let rounding = Rounding::made(seed);
             let near = self.near(at, &sizes, &rounding);
             let moved = self.moving(flow, layout, &near, columns)?;
-            for (residual, moved) in all.iter_mut().zip(self.residuals(&moved, &allowed, &rounding)?) {
+            for (residual, moved) in
+                all.iter_mut().zip(self.residuals(&moved, &allowed, &pressed, &rounding)?)
+            {
                 residual.size = residual.size.max((moved.value - residual.value).abs() / UNIT);
             }
         }
@@ -109,7 +121,11 @@ impl Derivation {
         let state = flow.state_of(at.t, &all).map_err(|error| refused(error.to_string()))?;
         let mut rates = vec![f64::NAN; state.len()];
         flow.motion.rhs(at.t, &state, &mut rates).map_err(|failure| refused(failure.to_string()))?;
-        let energy = layout.energy.map(|place| flow.motion.observe(at.t, &state)[place]);
+        let is_observed = layout.energy.is_some() || !layout.normal_forces.is_empty();
+        let observed = if is_observed { flow.motion.observe_beside(at.t, &state) } else { Vec::new() };
+        let energy = layout.energy.map(|place| observed[place]);
+        let normal_force = |place: &Option<usize>| place.map_or(f64::NAN, |place| observed[place]);
+        let normal_forces = layout.normal_forces.iter().map(normal_force).collect();
         let velocities = rates[..n].to_vec();
         let state_rates = rates[rates.len() - at.z.len()..].to_vec();
         let known: Vec<(usize, f64)> =
@@ -119,7 +135,7 @@ impl Derivation {
         } else {
             self.accelerations(at, &velocities, &state_rates, &known)?
         };
-        Ok(Moving { place: at.clone(), velocities, accelerations, state_rates, energy })
+        Ok(Moving { place: at.clone(), velocities, accelerations, state_rates, energy, normal_forces })
     }
 
     /// ẇ, computed from η̇ and from the condition that the constraints stay satisfied.
@@ -169,10 +185,26 @@ impl Derivation {
         Ok((0..DIRECTIONS).map(allowed).collect())
     }
 
+    /// For each contact with friction a virtual velocity along which its constraint alone does work, of 1 for a normal force of 1.
+    fn pressed(&self, at: &Place) -> Result<Vec<Vec<f64>>, Irregular> {
+        if self.text.frictions.is_empty() {
+            return Ok(Vec::new());
+        }
+        let rows = self.constraint_matrix(&self.kept, at, &Rounding::none())?;
+        let inverse = solving_inverse(&matrix(&rows, at.w.len()));
+        let (inverse, _) = inverse.ok_or(Irregular::NotFinite { what: "a constraint" })?;
+        let place = |a: usize| self.kept.iter().position(|&kept| kept == a).ok_or(Unable::NoReaction);
+        let column =
+            |friction: &Friction| Ok(inverse.column(place(friction.constraint)?).iter().copied().collect());
+        self.text.frictions.iter().map(column).collect()
+    }
+
     fn residual_names(&self, here: &Moving) -> Vec<String> {
         let names = &self.text.names;
         let mut all: Vec<String> =
             (1..=DIRECTIONS).map(|i| format!("the equation along random virtual velocity {i}")).collect();
+        let pressing = self.text.frictions.iter().map(|friction| &names.constraints[friction.constraint]);
+        all.extend(pressing.map(|name| format!("N_{name}")));
         all.extend(self.kept.iter().map(|&a| format!("the rate of constraint {}", names.constraints[a])));
         all.extend(names.coordinates.iter().chain(&names.states).map(|x| format!("the rate of {x}")));
         all.extend(here.energy.filter(|_| !self.has_definitions()).map(|_| "energy".to_owned()));
@@ -183,6 +215,7 @@ impl Derivation {
         &self,
         here: &Moving,
         allowed: &[Vec<f64>],
+        pressed: &[Vec<f64>],
         rounding: &Rounding,
     ) -> Result<Vec<Residual>, Irregular> {
         let at = &here.place;
@@ -194,6 +227,10 @@ impl Derivation {
         let mut all = Vec::new();
         for v in allowed {
             all.push(self.along(here, &in_time, v, rounding)?);
+        }
+        for (v, normal_force) in pressed.iter().zip(&here.normal_forces) {
+            let found = self.along(here, &in_time, v, rounding)?;
+            all.push(Sized { value: found.value - normal_force, size: found.size.max(normal_force.abs()) });
         }
         let rates = self.constraint_rates(&self.kept, at, &in_time, rounding)?;
         let largest = |list: &[f64]| list.iter().fold(0.0f64, |size, x| size.max(x.abs()));
@@ -240,8 +277,11 @@ impl Derivation {
             Some(w) => self.once(at, &Direction { w, ..still }, rounding).lagrangian()?.eps,
             None => 0.0,
         };
-        let forces = self.forces(at, &[Virtual { w: varied, x: displacement }], rounding)?;
-        let force = forces.first().map_or(0.0, |balance| balance.sum);
+        let virtual_velocity = [Virtual { w: varied, x: displacement }];
+        let forces = self.forces(at, &virtual_velocity, rounding)?;
+        let drags = self.drags(at, &virtual_velocity, rounding)?;
+        let drags = drags.iter().zip(&here.normal_forces).map(|(drag, n)| drag.per_normal_force[0] * n);
+        let force = forces.first().map_or(0.0, |balance| balance.sum) + drags.sum::<f64>();
         let terms = [inertia, -transposed, -work, -force];
         let largest = forces.first().map_or(0.0, |balance| balance.largest);
         Ok(Sized {

@@ -79,15 +79,23 @@ impl Derivation {
         }
         let transposed = self.transposed(at, &velocity, &frame, &momenta, rounding)?;
         let unit = |s: usize| Virtual { w: at.along_velocity(s), x: frame[s].clone() };
-        let forces = self.forces(at, &(0..k).map(unit).collect::<Vec<_>>(), rounding)?;
+        let units: Vec<Virtual> = (0..k).map(unit).collect();
+        let forces = self.forces(at, &units, rounding)?;
         let rows = self.constraint_matrix(&self.kept, at, rounding)?;
         let drift = self.constraint_rates(&self.kept, at, &in_time, rounding)?;
+
+        // The forces of a reaction λ_α, with the friction that it causes.
+        let mut led_by = rows.clone();
+        for drag in self.drags(at, &units, rounding)? {
+            let forces = led_by[drag.kept].iter_mut().zip(&drag.per_normal_force);
+            forces.for_each(|(force, drag)| *force += drag);
+        }
 
         // M ẇ − Cᵀλ = p·δw + XL + Q − D_t p at ẇ = 0,  C ẇ = −(D_t φ at ẇ = 0)
         let l = rows.len();
         let system = DMatrix::from_fn(k + l, k + l, |i, j| match (i < k, j < k) {
             (true, true) => mass[(i, j)],
-            (true, false) => -rows[j - k][i],
+            (true, false) => -led_by[j - k][i],
             (false, true) => rows[i - k][j],
             (false, false) => 0.0,
         });
@@ -109,7 +117,7 @@ impl Derivation {
         let inertia = |s: usize| (0..k).map(|r| mass[(s, r)] * accelerations[r]).sum::<f64>();
         let inertia_size = |s: usize| (0..k).map(|r| (mass[(s, r)] * sizes[r]).abs()).fold(0.0, f64::max);
         let reacting =
-            |s: usize| rows.iter().zip(&values[k..]).map(move |(row, lambda)| (row[s] * lambda).abs());
+            |s: usize| led_by.iter().zip(&values[k..]).map(move |(row, lambda)| (row[s] * lambda).abs());
         let force_sizes: Vec<f64> = (0..k).map(|s| reacting(s).fold(terms[s], f64::max)).collect();
         let unconstrained =
             |s: usize| if mass[(s, s)] == 0.0 { 0.0 } else { force_sizes[s] / mass[(s, s)].abs() };

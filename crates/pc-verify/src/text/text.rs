@@ -10,6 +10,7 @@ use pc_model::document::{AlgebraDefinition, Contact, Document, Expression, Named
 use crate::error::Unable;
 use crate::text::body::{Body, Turning, matrix};
 use crate::text::contacts_by_name;
+use crate::text::friction::Friction;
 use crate::text::names::{Declared, Names};
 use crate::text::term::Term;
 use crate::text::tree::{Stop, Tree};
@@ -18,7 +19,7 @@ use crate::text::tree::{Stop, Tree};
 #[derive(Clone, Debug)]
 pub(crate) struct Text {
     pub(crate) names: Names,
-    /// The values of the parameters and inputs; for a table, its value at the start.
+    /// The values of the parameters and inputs; for a table, its value at the start; then those of `frictions`.
     pub(crate) parameters: Vec<f64>,
     /// The tables among the inputs, with their indices.
     pub(crate) tables: Vec<(usize, Arc<Table>)>,
@@ -43,6 +44,8 @@ pub(crate) struct Text {
     pub(crate) dissipation: Option<Term>,
     pub(crate) bodies: Vec<Body>,
     pub(crate) forces: Vec<(Forced, Term)>,
+    /// The dry friction of contacts.
+    pub(crate) frictions: Vec<Friction>,
     /// The rigid stops of joints.
     pub(crate) stops: Vec<Stop>,
     /// `[integrals]` and `[outputs]`, as far as they can be resolved.
@@ -102,6 +105,8 @@ impl Text {
         let gravity = document.gravity.iter().flat_map(|gravity| &gravity.acceleration);
         names.gravity = gravity.map(|part| names.resolve(&part.ast)).collect::<Result<_, _>>()?;
         names.contacts = contacts_by_name::components(document, &tree, &names)?;
+        let (frictions, forces) = Friction::all(document, &names)?;
+        names.contacts.extend(forces);
         let term = |expression: &Expression| names.resolve(&expression.ast);
         let terms = |list: &[Expression]| list.iter().map(term).collect::<Result<Vec<Term>, Unable>>();
         let energy = document.lagrangian.as_ref();
@@ -136,7 +141,9 @@ impl Text {
             })
         });
         Ok(Text {
-            parameters: model.parameters().map(|(_, value)| value).collect(),
+            parameters: (model.parameters().map(|(_, value)| value))
+                .chain(vec![0.0; Friction::PARAMETERS * frictions.len()])
+                .collect(),
             tables: tables.into_iter().map(|(place, table)| (place, Arc::clone(table))).collect(),
             shifts: Vec::new(),
             state_rates: document.states.iter().map(|z| term(&z.rate)).collect::<Result<_, _>>()?,
@@ -155,6 +162,7 @@ impl Text {
             lagrangian: part(energy.and_then(|l| l.lagrangian.as_ref()))?,
             dissipation: with(energy.and_then(|l| l.dissipation.as_ref()), drives.dissipation)?,
             bodies: bodies.chain(tree.bodies(&names)?.into_iter().map(Ok)).collect::<Result<_, Unable>>()?,
+            frictions,
             stops: drives.stops,
             forces: document
                 .forces

@@ -1,0 +1,70 @@
+//! The dry friction of contacts, T = −μ N u with u = s/|s| for the velocity s of slip.
+
+use pc_model::document::Document;
+
+use crate::error::Unable;
+use crate::text::names::Names;
+use crate::text::term::{Function, Term};
+
+/// The friction of one contact.
+#[derive(Clone, Debug)]
+pub(crate) struct Friction {
+    /// The constraint whose reaction is N.
+    pub(crate) constraint: usize,
+    /// −T/N along the two tangents.
+    pub(crate) per_normal_force: [Term; 2],
+    /// The velocities of slip along them.
+    pub(crate) slips: [Term; 2],
+    /// Whether friction jumps where the slip vanishes.
+    pub(crate) jumps: bool,
+    /// The index among the parameters of the number that is 1 where u is given, because the slip is nothing but rounding; u
+    /// follows.
+    pub(crate) held: usize,
+}
+
+impl Friction {
+    /// The number of parameters for each contact with friction.
+    pub(crate) const PARAMETERS: usize = 3;
+
+    /// The friction of all contacts, and its forces by name.
+    pub(crate) fn all(
+        document: &Document,
+        names: &Names,
+    ) -> Result<(Vec<Friction>, Vec<(String, Term)>), Unable> {
+        let (mut all, mut forces) = (Vec::new(), Vec::new());
+        for contact in &document.contacts {
+            let Some(friction) = &contact.friction else { continue };
+            let name = &contact.name.text;
+            let unknown = || Unable::UnknownName { name: name.clone() };
+            let constraint = names.constraints.iter().position(|known| known == name).ok_or_else(unknown)?;
+            let slip = |i: usize| {
+                let component = format!("{name}_slip_{i}");
+                let found = names.contacts.iter().find(|(known, _)| *known == component);
+                found.map(|(_, slip)| slip.clone()).ok_or_else(unknown)
+            };
+            let slips = [slip(1)?, slip(2)?];
+            let square = |term: &Term| Term::Product(vec![(false, term.clone()), (false, term.clone())]);
+            let mut squares: Vec<(bool, Term)> = slips.iter().map(|slip| (false, square(slip))).collect();
+            if let Some(creep) = &friction.creep {
+                squares.push((false, square(&names.resolve(&creep.ast)?)));
+            }
+            let size = Term::Call(Function::Sqrt, vec![Term::Sum(squares)]);
+            let coefficient = names.resolve(&friction.coefficient.ast)?;
+            let held = names.parameters.len() + Friction::PARAMETERS * all.len();
+            let is_held = Term::Sum(vec![(false, Term::Parameter(held)), (true, Term::Number(0.5))]);
+            let part = |i: usize| {
+                let free = Term::Product(vec![(false, slips[i].clone()), (true, size.clone())]);
+                let u =
+                    Term::Call(Function::Step, vec![is_held.clone(), Term::Parameter(held + 1 + i), free]);
+                Term::Product(vec![(false, coefficient.clone()), (false, u)])
+            };
+            let per_normal_force = [part(0), part(1)];
+            for (name, part) in contact.friction_forces().into_iter().zip(&per_normal_force) {
+                let force = Term::Product(vec![(false, Term::Reaction(constraint)), (false, part.clone())]);
+                forces.push((name, Term::Negative(Box::new(force))));
+            }
+            all.push(Friction { constraint, per_normal_force, slips, jumps: friction.creep.is_none(), held });
+        }
+        Ok((all, forces))
+    }
+}
