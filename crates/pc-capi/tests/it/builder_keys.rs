@@ -189,6 +189,8 @@ fn everything() -> Model {
         ("normal", &["0", "0", "m"]),
         ("through", &["0", "m", "0"]),
         ("height", &["m"]),
+        ("friction", &["m"]),
+        ("creep", &["m"]),
         ("keeps", &["true"]),
     ] {
         touching(&model, "ground", entry, values).unwrap();
