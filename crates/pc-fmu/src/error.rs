@@ -21,10 +21,10 @@ pub enum FmuError {
         /// The event.
         event: String,
     },
-    /// Joints with rigid stops or stiction.
+    /// Joints with rigid stops or stiction, or bodies that roll where dry friction suffices.
     #[error(
-        "an FMU computes no impacts on rigid stops, and no stiction: give the joints `stop_stiffness` in place of `restitution`, and \
-         leave `stiction` out"
+        "an FMU computes no impacts on rigid stops, no stiction, and no rolling by dry friction: give the joints `stop_stiffness` \
+         in place of `restitution`, leave `stiction` out, and give the friction of contacts `creep`"
     )]
     HeldAtRest,
     /// A form without some of the coordinates.

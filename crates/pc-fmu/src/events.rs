@@ -32,7 +32,7 @@ pub(crate) fn events<'g>(
     if !assembly.events.is_empty() && form.system.frame().coordinates() != coordinates {
         return Err(FmuError::EventsNeedCoordinates);
     }
-    if whole.is_held_at_rest() {
+    if whole.is_held_at_rest() || assembly.rolls_by_friction() {
         return Err(FmuError::HeldAtRest);
     }
     let all = whole.state();

@@ -246,7 +246,7 @@ pub use compiled::projection::integrals::KeptIntegrals;
 pub use compiled::velocity_map::VelocityMap;
 pub use constraints::body_reactions::BodyReaction;
 pub use constraints::constraint::Constraint;
-pub use constraints::friction::ConstraintFriction;
+pub use constraints::friction::{ConstraintFriction, FrictionForces};
 pub use constraints::multipliers::Multipliers;
 pub use emit::function::SourceFunction;
 pub use emit::source::{EmitOptions, EmittedFile};

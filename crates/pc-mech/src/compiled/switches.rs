@@ -22,6 +22,10 @@ const MOST: usize = 256;
 const ADDS_UP: f64 = 1e-9;
 /// A surface that will be reached within this fraction of the time t counts as reached.
 const AT_ONCE: f64 = 1e-9;
+/// A function below this multiple of the rounding error of its terms vanishes.
+const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+/// The number of rounds for each surface in which it is decided whether the motion slides along it.
+const ROUNDS: usize = 20;
 
 impl<'g> FirstOrder<'g> {
     /// The motion, held on one piece at a time; none if it has a single piece, or if a surface contains unknowns that
@@ -135,6 +139,11 @@ impl<'g> FirstOrder<'g> {
     }
 }
 
+/// dg/dt for these rates, from the derivatives of g with respect to time and state.
+fn along_normal((by_time, normal): (f64, &[f64]), rates: &[f64]) -> f64 {
+    normal.iter().zip(rates).fold(by_time, |sum, (slope, rate)| sum + slope * rate)
+}
+
 /// Whether one of the expressions contains one of the symbols.
 fn contains<'g>(graph: &'g Graph, expressions: &[Expr<'g>], symbols: &[Expr<'g>]) -> bool {
     graph.symbols_of(expressions).iter().any(|symbol| symbols.contains(symbol))
@@ -198,8 +207,7 @@ impl Switches {
         true
     }
 
-    /// The sides of all surfaces at (t, y), σ for surfaces along which the motion slides; none if it does not
-    /// slide.
+    /// The sides of all surfaces at (t, y), σ for surfaces along which the motion slides; none if it is on no surface.
     fn weights(&mut self, t: f64, y: &[f64]) -> Option<Vec<f64>> {
         let mut functions = vec![f64::NAN; self.names.len()];
         let mut sides = vec![1.0; self.names.len()];
@@ -208,33 +216,74 @@ impl Switches {
             self.functions(t, y, &mut functions);
             sides = functions.iter().map(|g| if *g < 0.0 { -1.0 } else { 1.0 }).collect();
         }
-        let ranges: Vec<SlidingRange> = (0..sides.len()).map(|surface| self.range(surface, t, y)).collect();
-        let mut along = sides.clone();
         let mut normal = vec![0.0; y.len()];
-        let mut rates = vec![0.0; y.len()];
+        let mut open = Vec::new();
         for surface in 0..sides.len() {
             let by_time = self.gradient(surface, t, y, &mut normal);
-            let [above, below] = [1.0, -1.0].map(|side| {
+            let fastest = [1.0, -1.0].into_iter().fold(0.0, |fastest: f64, side| {
                 let mut beside = sides.clone();
                 beside[surface] = side;
-                let known = self.rates(&beside, t, y, &mut rates).is_ok();
-                let rate = by_time + normal.iter().zip(&rates).map(|(slope, rate)| slope * rate).sum::<f64>();
-                if known { rate } else { f64::NAN }
+                fastest.max(self.rate(&beside, (t, y), (by_time, &normal)).abs())
             });
-            let (meets, fastest) = match ranges[surface] == SlidingRange::default() {
-                true => (above < 0.0 && below > 0.0, below.min(-above)),
-                false => (above < below, (below - above) / 2.0),
-            };
-            if meets && functions[surface].abs() <= AT_ONCE * t.abs() * fastest {
-                along[surface] = 0.0;
+            let terms = normal.iter().zip(y).map(|(slope, y)| (slope * y).abs());
+            let rounding = ROUNDINGS * terms.fold(0.0, f64::max);
+            if functions[surface].abs() <= rounding.max(AT_ONCE * t.abs() * fastest) {
+                open.push((surface, by_time, normal.clone()));
             }
         }
-        if !along.contains(&0.0) {
-            return None;
+        if open.is_empty() { None } else { self.decided(sides, &open, (t, y)) }
+    }
+
+    /// The sides on which the motion goes on from surfaces, each given with the derivatives of its function: at first it slides
+    /// along all of them, and then leaves those that do not hold it, one after the other [Murty 1974].
+    fn decided(
+        &mut self,
+        mut sides: Vec<f64>,
+        open: &[(usize, f64, Vec<f64>)],
+        (t, y): (f64, &[f64]),
+    ) -> Option<Vec<f64>> {
+        open.iter().for_each(|&(surface, ..)| sides[surface] = 0.0);
+        'rounds: for _ in 0..ROUNDS * open.len() {
+            let sliding = match sides.contains(&0.0) {
+                true => Some(Sliding::of(self, &sides, t, y).ok()?),
+                false => None,
+            };
+            let mut along = sides.clone();
+            if let Some(sliding) = &sliding {
+                sliding
+                    .surfaces
+                    .iter()
+                    .zip(&sliding.weights)
+                    .for_each(|(&surface, &weight)| along[surface] = weight);
+            }
+            for (surface, by_time, normal) in open {
+                if sides[*surface] == 0.0 {
+                    if !self.range(*surface, t, y).holds(along[*surface], ADDS_UP) {
+                        sides[*surface] = 1.0_f64.copysign(along[*surface]);
+                        continue 'rounds;
+                    }
+                    continue;
+                }
+                let rate = match &sliding {
+                    Some(sliding) => along_normal((*by_time, normal), &sliding.rates),
+                    None => self.rate(&sides, (t, y), (*by_time, normal)),
+                };
+                // What holds without an end on one side has no other side.
+                if rate * sides[*surface] < 0.0 && self.range(*surface, t, y) != SlidingRange::NONE {
+                    sides[*surface] = 0.0;
+                    continue 'rounds;
+                }
+            }
+            return Some(along);
         }
-        let Sliding { surfaces, weights, .. } = Sliding::of(self, &along, t, y).ok()?;
-        surfaces.iter().zip(weights).for_each(|(&surface, weight)| along[surface] = weight);
-        along.iter().zip(&ranges).all(|(&side, range)| range.holds(side, ADDS_UP)).then_some(along)
+        None
+    }
+
+    /// dg/dt on these sides, none of them 0, for a function with these derivatives; NaN where f has no value.
+    fn rate(&mut self, sides: &[f64], (t, y): (f64, &[f64]), normal: (f64, &[f64])) -> f64 {
+        let mut rates = vec![f64::NAN; y.len()];
+        let known = self.rates(sides, t, y, &mut rates).is_ok();
+        if known { along_normal(normal, &rates) } else { f64::NAN }
     }
 
     /// The rates of the motion on the sides held.

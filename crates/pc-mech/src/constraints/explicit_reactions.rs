@@ -77,8 +77,13 @@ impl<'g> Multipliers<'g> {
     pub(super) fn explicit_reactions(&self) -> Result<ExplicitReactions<'g>, MechError> {
         let (system, mass, c) = (&self.equations.system, self.equations.mass_matrix(), &self.coefficients);
         let graph = system.graph();
-        system.check_regular(mass)?;
-        let factors = Factors::of(graph, mass);
+        // Without an inertia of its own a velocity has that of the constraints, Cᵀ C, which changes neither η̇ nor λ: to r is added
+        // −Cᵀ ċ.
+        let (mass, right) = match system.check_regular(mass) {
+            Ok(()) => (mass.clone(), self.equations.right_hand_side().to_vec()),
+            Err(error) => self.with_inertia_of_constraints().ok_or(error)?,
+        };
+        let factors = Factors::of(graph, &mass);
         let dot =
             |row: &[Expr<'g>], column: &[Expr<'g>]| graph.dot(row.iter().copied(), column.iter().copied());
         let pushed: Vec<Vec<Expr<'g>>> = (0..c.rows()).map(|a| factors.solve(graph, &c.row(a))).collect();
@@ -86,10 +91,22 @@ impl<'g> Multipliers<'g> {
         if let Some(constraint) = self.first_dependent(&gram) {
             return Err(ConstraintError::Dependent { constraint }.into());
         }
-        let free = factors.solve(graph, self.equations.right_hand_side());
+        let free = factors.solve(graph, &right);
         let gaps: Vec<Expr<'g>> = (0..c.rows()).map(|a| self.right[a] - dot(&c.row(a), &free)).collect();
         let gram = Factors::of(graph, &gram);
         Ok(ExplicitReactions { values: gram.solve(graph, &gaps), pushed, gram })
+    }
+
+    /// M + Cᵀ C and r − Cᵀ ċ, if that matrix is regular.
+    fn with_inertia_of_constraints(&self) -> Option<(Matrix<Expr<'g>>, Vec<Expr<'g>>)> {
+        let (graph, c, mass) = (self.graph(), &self.coefficients, self.equations.mass_matrix());
+        let column = |s: usize| -> Vec<Expr<'g>> { c.column(s).into_iter().collect() };
+        let k = c.columns();
+        let whole =
+            Matrix::from_fn(k, k, |s, r| mass[(s, r)] + graph.dot(column(s.max(r)), column(s.min(r))));
+        let right = self.equations.right_hand_side().iter().enumerate();
+        let right = right.map(|(s, &r)| r + graph.dot(column(s), self.right.iter().copied())).collect();
+        (graph.generic_rank(&whole.to_rows()) == k).then_some((whole, right))
     }
 
     /// The name of the first constraint whose row adds nothing to the rank of the rows before it.

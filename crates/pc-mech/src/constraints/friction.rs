@@ -43,6 +43,18 @@ impl<'g> ConstraintFriction<'g> {
     }
 }
 
+/// The forces of friction of some constraints, as functions of (t, x, η).
+#[derive(Clone, Debug)]
+pub struct FrictionForces<'g> {
+    /// T_i, for each constraint along its tangents.
+    pub forces: Vec<Vec<Expr<'g>>>,
+    /// 1 − W_ff for each constraint, the least on all sides of its jump. Where it is not positive a normal force has no value, or two
+    /// (Painlevé 1895): the constraint jams.
+    pub margins: Vec<Expr<'g>>,
+    /// λ⁰, the normal forces without friction.
+    pub without: Vec<Expr<'g>>,
+}
+
 /// What the normal forces depend on.
 struct NormalForces<'a, 'g> {
     multipliers: &'a Multipliers<'g>,
@@ -78,7 +90,7 @@ impl<'g> Multipliers<'g> {
     ///     creep: None,
     /// };
     /// let forces = held.friction_forces(&[friction])?;
-    /// let value = graph.evaluate(&forces[0], &[(u, 1.0), (v, 1.0)])?[0];
+    /// let value = graph.evaluate(&forces.forces[0], &[(u, 1.0), (v, 1.0)])?[0];
     /// assert!((value + 0.3 * 10.0 * half).abs() < 1e-14);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -89,14 +101,16 @@ impl<'g> Multipliers<'g> {
     pub fn friction_forces(
         &self,
         frictions: &[ConstraintFriction<'g>],
-    ) -> Result<Vec<Vec<Expr<'g>>>, MechError> {
+    ) -> Result<FrictionForces<'g>, MechError> {
         if let Some(friction) = frictions.iter().find(|f| f.jumps() && f.slips.len() > 1) {
             let constraint = self.constraints()[friction.constraint].name().to_owned();
             return Err(ConstraintError::TwoSlips { constraint }.into());
         }
-        let forces = self.normal_forces(frictions)?.forces(&mut Vec::new());
+        let normal_forces = self.normal_forces(frictions)?;
+        let forces = normal_forces.forces(&mut Vec::new());
         self.graph().check(&forces.concat())?;
-        Ok(forces)
+        let margins = (0..frictions.len()).map(|f| normal_forces.margin(f)).collect();
+        Ok(FrictionForces { forces, margins, without: normal_forces.without })
     }
 
     /// The forces Q_s = T_i ∂s_i/∂η_s on the quasi-velocities of these [forces](Multipliers::friction_forces).
@@ -155,6 +169,19 @@ impl<'g> NormalForces<'_, 'g> {
             above.into_iter().zip(below).map(|(a, b)| next.slips[0].step(a, b)).collect()
         };
         above.into_iter().zip(below).map(between).collect()
+    }
+
+    /// 1 − W_ff, the least on all sides.
+    fn margin(&self, f: usize) -> Expr<'g> {
+        let (friction, graph) = (&self.frictions[f], self.multipliers.graph());
+        let on = |u: Vec<Expr<'g>>| {
+            let terms = u.into_iter().zip(&self.by_force[f]);
+            Expr::ONE + friction.coefficient * graph.sum(terms.map(|(u, by)| u * by[f]))
+        };
+        match friction.creep {
+            Some(creep) => on(friction.smooth(creep)),
+            None => on(vec![Expr::ONE]).min(on(vec![-Expr::ONE])),
+        }
     }
 
     /// T where each friction that jumps acts on the side given for it.

@@ -221,7 +221,7 @@ impl<'g> Assembler<'g, '_> {
         let system =
             builder.frame(frame).build().map_err(|error| self.model.document().derivation_error(error))?;
         let system = self.with_joint_reactions(system)?;
-        let system = self.with_friction_of_contacts(system, &constraints, &x_dot, &values)?;
+        let (system, jams) = self.with_friction_of_contacts(system, &constraints, &x_dot, &values)?;
         self.check_inputs(&system)?;
         let written_start = self.model.projects_start().then(|| start.clone());
         let constraints =
@@ -236,6 +236,7 @@ impl<'g> Assembler<'g, '_> {
         let mut events =
             self.events(crossings, &x_dot, &constraints, system.frame().coordinates().len() + eta.len())?;
         events.extend(self.impacts(&stops)?);
+        events.extend(jams);
         self.check_joints(&stops, &system, &start)?;
         let action = self.action()?;
         self.scope.look_at_unused()?;

@@ -73,6 +73,11 @@ impl<'g> Assembly<'g> {
         self.constraints.redundant().iter().filter(is_plain)
     }
 
+    /// Whether dry friction holds a body at a contact, so that it rolls.
+    pub fn rolls_by_friction(&self) -> bool {
+        self.document.contacts.iter().any(Contact::sticks)
+    }
+
     /// Whether an event depends on the force of a contact.
     pub fn has_events_on_reactions(&self) -> bool {
         let forces = self.forces_of_contacts();

@@ -1,28 +1,30 @@
 //! The dry friction of contacts, whose normal forces are functions of the state.
 
-use pc_mech::{ConstraintFriction, Expr, System};
+use pc_expr::Direction;
+use pc_mech::{ConstraintFriction, Expr, FrictionForces, System};
 use pc_nonholo::ConstraintClassification;
 
 use crate::assembly::assembler::Assembler;
 use crate::assembly::constraints::Written;
+use crate::assembly::event::Event;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::document::{Contact, Expression};
 use crate::names::stage::Stage;
 
 impl<'g> Assembler<'g, '_> {
-    /// The system with the friction of contacts among its forces, and with these forces in its outputs; `at` are the values
-    /// of all symbols at the start.
+    /// The system with the friction of contacts among its forces, and with these forces in its outputs, and the events at which
+    /// contacts jam; `at` are the values of all symbols at the start.
     pub(super) fn with_friction_of_contacts(
         &mut self,
         system: System<'g>,
         written: &[Written<'g>],
         x_dot: &[(Expr<'g>, Expr<'g>)],
         at: &[(Expr<'g>, f64)],
-    ) -> Result<System<'g>, ModelError> {
+    ) -> Result<(System<'g>, Vec<Event<'g>>), ModelError> {
         let document = self.model.document();
         if document.contacts.iter().all(|contact| contact.friction.is_none()) {
-            return Ok(system);
+            return Ok((system, Vec::new()));
         }
         let constraints = self.in_quasi_velocities(written, x_dot);
         let classification = ConstraintClassification::new(&system, &constraints, at);
@@ -55,9 +57,11 @@ impl<'g> Assembler<'g, '_> {
             let slips = slipping.into_iter().map(|(_, slip)| slip).collect();
             frictions.push(ConstraintFriction { constraint, coefficient, slips, creep });
         }
-        let Some(binding) = binding else { return Ok(system) };
-        let forces = binding.friction_forces(&frictions);
-        let forces = forces.map_err(|error| document.constraint_error(error.into()))?;
+        let Some(binding) = binding else { return Ok((system, Vec::new())) };
+        let found = binding.friction_forces(&frictions);
+        let FrictionForces { forces, margins, without } =
+            found.map_err(|error| document.constraint_error(error.into()))?;
+        let jams = self.jams(&margins, &without, at)?;
         let on_velocities = binding.friction_on_quasi_velocities(&frictions, &forces);
         let values = forces.into_iter().flat_map(|forces| [forces, vec![Expr::ZERO; 2]]);
         let known: Vec<(Expr<'g>, Expr<'g>)> = symbols
@@ -66,7 +70,56 @@ impl<'g> Assembler<'g, '_> {
             .flat_map(|(symbols, values)| symbols.into_iter().zip(values))
             .collect();
         let system = system.with_observed(&known).with_added_forces(&on_velocities);
-        system.map_err(|error| document.derivation_error(error))
+        Ok((system.map_err(|error| document.derivation_error(error))?, jams))
+    }
+
+    /// The events at which contacts jam, checked at the start.
+    fn jams(
+        &self,
+        margins: &[Expr<'g>],
+        without: &[Expr<'g>],
+        at: &[(Expr<'g>, f64)],
+    ) -> Result<Vec<Event<'g>>, ModelError> {
+        let document = self.model.document();
+        let value = |of: Expr<'g>| self.graph.evaluate(&[of], at).ok().and_then(|list| list.first().copied());
+        let mut jams = Vec::new();
+        let contacts = document.contacts.iter().filter(|contact| contact.friction.is_some());
+        for (contact, (&when, &normal_force)) in contacts.zip(margins.iter().zip(without)) {
+            let name = &contact.name.text;
+            let refused = |message: String, help| {
+                Err(document.error(&contact.name.place, MeaningError::OfJoint { message, help }))
+            };
+            if value(when).is_some_and(|margin| margin <= 0.0) {
+                let message = format!(
+                    "with this friction the normal force of `{name}` has no value (Painlevé's paradox)"
+                );
+                return refused(message, "give a smaller coefficient of friction, or another start");
+            }
+            if let Some(force) = value(normal_force).filter(|force| *force < 0.0) {
+                let message = format!(
+                    "the ground would have to pull at the start: `{name}` has the normal force {force}"
+                );
+                return refused(message, "start with a body that presses on the ground");
+            }
+            if self.graph.symbols_of(&[when]).is_empty() {
+                continue;
+            }
+            let event = format!("{name}_jams");
+            if let Some(other) = document.events.iter().find(|known| known.name.text == event) {
+                let message = format!("`{event}` is the event at which the contact `{name}` jams");
+                let help = "give this event another name";
+                return Err(document.error(&other.place, MeaningError::OfJoint { message, help }));
+            }
+            jams.push(Event {
+                name: event,
+                when,
+                direction: Direction::Falling,
+                terminal: true,
+                resets: Vec::new(),
+                impact: None,
+            });
+        }
+        Ok(jams)
     }
 
     /// Checks the coefficient of friction and the velocity of creep at the start.

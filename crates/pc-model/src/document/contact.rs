@@ -113,6 +113,11 @@ impl Contact {
         reactions
     }
 
+    /// Whether dry friction holds the body, which then rolls.
+    pub(crate) fn sticks(&self) -> bool {
+        self.friction.as_ref().is_some_and(|friction| friction.creep.is_none())
+    }
+
     /// The names of the forces of dry friction along the two tangents.
     pub fn friction_forces(&self) -> Vec<String> {
         let tangents = if self.friction.is_some() { &[1, 2][..] } else { &[] };

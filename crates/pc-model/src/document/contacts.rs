@@ -72,7 +72,7 @@ fn contact(item: &Item<'_>) -> Result<Contact, ModelError> {
             "attitude" => attitude = Some(part.located(Box::new(part.array("9 expressions", ATTITUDE)?))),
             "motion" => motion = Some(part.choice(&[("rolls", true), ("slides", false)])?.value),
             "friction" => friction = Some((part.clone(), part.expression()?)),
-            "creep" => creep = Some((part.clone(), part.expression()?)),
+            "creep" => creep = Some(part.expression()?),
             "normal" => normal = Some(part.array("3 expressions", NORMAL)?),
             "through" => through = Some(part.array("3 expressions", "through = [0, 0, 0]")?),
             "height" => height = Some((part.clone(), part.expression()?)),
@@ -120,10 +120,9 @@ fn contact(item: &Item<'_>) -> Result<Contact, ModelError> {
     if let (Some((part, _)), Some(true)) = (&friction, keeps) {
         return Err(part.key_error(ErrorKind::OfSliding { key: "friction", because: "keeps = true" }));
     }
-    if let (Some((part, _)), None) = (&creep, &friction) {
-        return Err(part.key_error(ErrorKind::OfOtherShapes { key: "creep".to_owned(), example: FRICTION }));
+    if creep.is_some() && friction.is_none() {
+        return Err(missing("friction", FRICTION));
     }
-    let creep = creep.map(|(_, creep)| creep);
     let friction = friction.map(|(_, coefficient)| ContactFriction { coefficient, creep });
     let changes = |axis: &usize| {
         let coordinate = format!("{}_{}", name.text, ["x", "y"][*axis]);

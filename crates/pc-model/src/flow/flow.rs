@@ -49,12 +49,18 @@ impl Flow {
         variables: Variables,
     ) -> Result<Flow, ModelError> {
         let refused = |error| assembly.document.derivation_error(error);
-        if matches!(variables, Variables::Momenta | Variables::ReducedMomenta)
-            && assembly.system.is_held_at_rest()
-        {
-            let message =
-                "its joints are held at rest by stops or stiction, but this form has momenta".to_owned();
-            return Err(assembly.no_form(message, "use a form in velocities, such as poincare"));
+        if matches!(variables, Variables::Momenta | Variables::ReducedMomenta) {
+            let held = if assembly.system.is_held_at_rest() {
+                Some("its joints are held at rest by stops or stiction")
+            } else if assembly.rolls_by_friction() {
+                Some("its bodies roll where dry friction suffices")
+            } else {
+                None
+            };
+            if let Some(held) = held {
+                let message = format!("{held}, but this form has momenta");
+                return Err(assembly.no_form(message, "use a form in velocities, such as poincare"));
+            }
         }
         match (variables, assembly.constraints.held()) {
             (Variables::QuasiVelocities, Some(_)) => {

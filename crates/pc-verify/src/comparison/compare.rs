@@ -244,30 +244,13 @@ impl Second {
         t: f64,
         state: &[f64],
     ) -> Result<Agreement, VerifyError> {
-        let agreement = self.nothing_yet();
-        let row = self.row(&mut flow, t, state);
-        if !self.derivation.text.frictions.is_empty()
-            && let Ok(place) = self.place(t, &row)
-            && let Ok(Some(held)) = self.held_at(&mut flow, (t, state), &place)
-        {
-            return held.agrees_on_row(form, flow, assembly, (t, &row), agreement);
-        }
-        self.agrees_on_row(form, flow, assembly, (t, &row), agreement)
-    }
-
-    fn agrees_on_row(
-        &self,
-        form: &str,
-        flow: Flow,
-        assembly: &Assembly<'_>,
-        (t, row): (f64, &[f64]),
-        mut agreement: Agreement,
-    ) -> Result<Agreement, VerifyError> {
+        let mut agreement = self.nothing_yet();
         if self.cost() > LONG && !self.is_long(&flow) {
-            return self.agrees_projected(form, flow, (t, row), agreement);
+            return self.agrees_projected(form, flow, t, state, agreement);
         }
+        let row = self.row(&mut flow, t, state);
         let mut firsts = [First::flow(form, flow, self, assembly, &mut agreement)];
-        let compared = self.place(t, row).map_err(Passed::from);
+        let compared = self.place(t, &row).and_then(|place| self.slipping(place)).map_err(Passed::from);
         match compared.and_then(|place| self.compare(&mut firsts, &place, &mut agreement)) {
             Ok(()) => agreement.states += 1,
             Err(passed) => agreement.pass_over(passed)?,
@@ -279,12 +262,14 @@ impl Second {
     fn agrees_projected(
         &self,
         form: &str,
-        flow: Flow,
-        (t, row): (f64, &[f64]),
+        mut flow: Flow,
+        t: f64,
+        state: &[f64],
         mut agreement: Agreement,
     ) -> Result<Agreement, VerifyError> {
+        let row = self.row(&mut flow, t, state);
         let mut large = Projection::new(flow, self);
-        let place = self.place(t, row).map_err(Passed::from);
+        let place = self.place(t, &row).and_then(|place| self.slipping(place)).map_err(Passed::from);
         match place.and_then(|place| self.compare_projected(form, &mut large, &place, &mut agreement)) {
             Ok(()) => agreement.states += 1,
             Err(passed) => agreement.pass_over(passed)?,
@@ -310,7 +295,7 @@ impl Second {
             }
             assembly.within_limits()?;
             let place = match number {
-                0 => Ok(self.start.clone()),
+                0 => self.slipping(self.start.clone()),
                 _ => self.derivation.random(&self.start, number - 1),
             };
             let outcome = place.map_err(Passed::from).and_then(|place| match &mut compared {

@@ -239,9 +239,14 @@ impl Derivation {
             true => vec![Vec::new(); rates.len()],
             false => self.constraint_matrix(&self.kept, at, rounding)?,
         };
-        let terms = |row: &[f64]| row.iter().zip(&in_time.w).map(|(a, w)| a * w).collect::<Vec<f64>>();
-        all.extend(rates.iter().zip(&rows).map(|(&value, row)| Sized { value, size: largest(&terms(row)) }));
         let point = self.still(at, rounding);
+        // At rest, the accelerations are what remains of those of free fall.
+        let fall = largest(&point.all(&self.text.gravity)?);
+        let size = |row: &[f64]| {
+            let terms: Vec<f64> = row.iter().zip(&in_time.w).map(|(a, w)| a * w).collect();
+            largest(&terms).max(fall * largest(row))
+        };
+        all.extend(rates.iter().zip(&rows).map(|(&value, row)| Sized { value, size: size(row) }));
         let size = largest(&here.velocities);
         let both = here.velocities.iter().zip(point.velocities()?);
         all.extend(both.map(|(one, two)| Sized { value: one - two, size }));

@@ -17,15 +17,9 @@ pub(crate) struct Friction {
     pub(crate) slips: [Term; 2],
     /// Whether friction jumps where the slip vanishes.
     pub(crate) jumps: bool,
-    /// The index among the parameters of the number that is 1 where u is given, because the slip is nothing but rounding; u
-    /// follows.
-    pub(crate) held: usize,
 }
 
 impl Friction {
-    /// The number of parameters for each contact with friction.
-    pub(crate) const PARAMETERS: usize = 3;
-
     /// The friction of all contacts, and its forces by name.
     pub(crate) fn all(
         document: &Document,
@@ -50,20 +44,14 @@ impl Friction {
             }
             let size = Term::Call(Function::Sqrt, vec![Term::Sum(squares)]);
             let coefficient = names.resolve(&friction.coefficient.ast)?;
-            let held = names.parameters.len() + Friction::PARAMETERS * all.len();
-            let is_held = Term::Sum(vec![(false, Term::Parameter(held)), (true, Term::Number(0.5))]);
-            let part = |i: usize| {
-                let free = Term::Product(vec![(false, slips[i].clone()), (true, size.clone())]);
-                let u =
-                    Term::Call(Function::Step, vec![is_held.clone(), Term::Parameter(held + 1 + i), free]);
-                Term::Product(vec![(false, coefficient.clone()), (false, u)])
-            };
-            let per_normal_force = [part(0), part(1)];
+            let per_normal_force = slips.each_ref().map(|slip| {
+                Term::Product(vec![(false, coefficient.clone()), (false, slip.clone()), (true, size.clone())])
+            });
             for (name, part) in contact.friction_forces().into_iter().zip(&per_normal_force) {
                 let force = Term::Product(vec![(false, Term::Reaction(constraint)), (false, part.clone())]);
                 forces.push((name, Term::Negative(Box::new(force))));
             }
-            all.push(Friction { constraint, per_normal_force, slips, jumps: friction.creep.is_none(), held });
+            all.push(Friction { constraint, per_normal_force, slips, jumps: friction.creep.is_none() });
         }
         Ok((all, forces))
     }

@@ -19,7 +19,7 @@ use crate::text::tree::{Stop, Tree};
 #[derive(Clone, Debug)]
 pub(crate) struct Text {
     pub(crate) names: Names,
-    /// The values of the parameters and inputs; for a table, its value at the start; then those of `frictions`.
+    /// The values of the parameters and inputs; for a table, its value at the start.
     pub(crate) parameters: Vec<f64>,
     /// The tables among the inputs, with their indices.
     pub(crate) tables: Vec<(usize, Arc<Table>)>,
@@ -141,9 +141,7 @@ impl Text {
             })
         });
         Ok(Text {
-            parameters: (model.parameters().map(|(_, value)| value))
-                .chain(vec![0.0; Friction::PARAMETERS * frictions.len()])
-                .collect(),
+            parameters: model.parameters().map(|(_, value)| value).collect(),
             tables: tables.into_iter().map(|(place, table)| (place, Arc::clone(table))).collect(),
             shifts: Vec::new(),
             state_rates: document.states.iter().map(|z| term(&z.rate)).collect::<Result<_, _>>()?,
