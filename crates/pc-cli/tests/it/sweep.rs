@@ -363,6 +363,17 @@ fn wrong_usage_suggests_a_correction() {
         (&["--samples", "0", "--random", "m=normal(0,1)"], "0 is not in"),
         (&["--vary", "m=1:2:3", "--threads", "0"], "--threads"),
         (&["--vary", "m=1:2:10000000000", "--vary", "k=1:2:10000000000"], "more than 2^64 members"),
+        (
+            &["--vary", "m=1:2:1000000", "--vary", "k=1:2:1000000"],
+            "pc: the sweep has 1000000000000 members, more than the limit of 1000000; ask for fewer values, or give \
+             --limit-members 1000000000000 if so many are meant\n",
+        ),
+        (&["--samples", "1000001", "--random", "m=normal(1,0.1)"], "give --limit-members 1000001 if"),
+        (
+            &["--vary", "m=1:2:8", "--shard", "1/4", "--limit-members", "7"],
+            "has 8 members, more than the limit of 7",
+        ),
+        (&["--vary", "m=1:2:3", "--limit-members", "0"], "0 is not in"),
     ] {
         let arguments = place.sweep("a.csv", options);
         ends(&strs(&arguments), 2, &[mention]);
@@ -373,6 +384,18 @@ fn wrong_usage_suggests_a_correction() {
     fs::write(place.at("model.toml"), MASSES.replace("k*x^2", "q*x^2")).expect("written");
     ends(&strs(&place.sweep("a.csv", &["--vary", "m=1:2:3"])), 3, &["q"]);
     assert_eq!(fs::read_dir(place.0.path()).expect("a directory").count(), 1, "nothing is left");
+}
+
+#[test]
+fn a_limit_on_members_that_is_not_passed_changes_nothing() {
+    let place = Place::new(MASSES);
+    let grid = ["--vary", "m=1:2:3", "--vary", "k=1:2:4"];
+    let limited = place.swept("b.csv", &[&grid[..], &["--limit-members", "12"]].concat());
+    assert!(place.swept("a.csv", &grid) == limited);
+    // A sweep that is meant is begun.
+    let mut many = place.sweep("c.csv", &["--vary", "m=1:2:1000001", "--limit-members", "1000001"]);
+    many.extend(["--limit-time", "0.5"].map(str::to_owned));
+    ends(&strs(&many), 4, &["of 1000001 members: more time would be needed"]);
 }
 
 /// So many members that the sweep lasts long enough to be cut short.
