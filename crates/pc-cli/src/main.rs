@@ -7,10 +7,14 @@ use clap::Parser;
 use pc_cli::CliError;
 use pc_cli::args::command_line::Arguments;
 use pc_cli::commands::{self, version};
+#[cfg(unix)]
+use pc_cli::output::size_limit;
 use pc_cli::output::standard_output;
 use pc_cli::terminal::text;
 
 fn main() -> ExitCode {
+    #[cfg(unix)]
+    size_limit::catch();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {

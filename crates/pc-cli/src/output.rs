@@ -1,6 +1,9 @@
 //! Destinations of results: standard output, or a file that is written whole or not at all.
 //!
 //! A finished run, page or picture becomes bytes at a `destination`; without a file, `standard_output` writes.
+//! Beyond the `size_limit` of the system, nothing can be written.
 
 pub mod destination;
+#[cfg(unix)]
+pub mod size_limit;
 pub mod standard_output;

@@ -57,6 +57,9 @@ pub struct SweepArguments {
     /// Seed of the random numbers
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub seed: u64,
+    /// Largest number of members, of all shards together; a sweep of more is refused before anything is computed [default: 1000000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub limit_members: Option<u64>,
     /// Number of threads, which does not affect the result [default: one per core]
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZeroUsize>,
@@ -166,6 +169,7 @@ impl SweepArguments {
             },
             state: self.state.choice(),
             threads: self.threads,
+            limit_members: self.limit_members,
         }
     }
 }

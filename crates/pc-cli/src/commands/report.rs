@@ -42,6 +42,10 @@ pub fn command(arguments: &ReportArguments) -> Result<(), CliError> {
     };
     let none = || Recording { remark: Some(NO_END.to_owned()), ..Recording::default() };
     let record = run.as_ref().map_or_else(none, Run::record);
+    let destination = match &run {
+        Some(run) => destination.for_run(run),
+        None => destination,
+    };
     destination.write_page(&report(&model, &assembly, Some(&record))?)?;
     Ok(run.map_or(Ok(()), Run::outcome)?)
 }
@@ -68,6 +72,7 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), CliError> {
     let scene = scene.ok_or_else(|| CliError::NothingToDraw { model: model.title().to_owned() })?;
     let (title, times) = (model.title(), &scene.times);
     let drawing = |frame| scene.drawing(title, frame, PAPER);
+    let destination = destination.for_run(&run);
     match destination.encoding() {
         Encoding::Gif => destination.write_film(stills(times).into_iter().map(drawing))?,
         _ if is_frame => {

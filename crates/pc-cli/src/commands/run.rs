@@ -52,10 +52,10 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
     // A picture needs all rows.
     let mut stream = file.as_ref().and_then(TableFile::stream).filter(|_| picture.is_none());
     let run = Run::of(&model, &arguments.wishes(), &besides, stream.as_mut(), &Terminal)?;
-    let written = match stream.filter(Stream::is_begun) {
-        Some(stream) => stream.end().map_err(CliError::from),
-        None => write(&run, file.as_ref(), picture.as_ref()),
-    };
+    let so_far = file.as_ref().filter(|_| run.is_interrupted()).and_then(TableFile::so_far);
+    let file = so_far.as_ref().or(file.as_ref());
+    let picture = picture.map(|(place, wanted)| (place.for_run(&run), wanted));
+    let written = write(&run, stream.filter(Stream::is_begun), file, picture.as_ref());
     text::say(format_args!("{}", summary::text(&run)));
     match (run.outcome(), written) {
         (Err(ending), Err(error)) => {
@@ -68,12 +68,17 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
 
 fn write(
     run: &Run,
+    stream: Option<Stream<'_>>,
     file: Option<&TableFile>,
     picture: Option<&(Destination, Wanted)>,
 ) -> Result<(), CliError> {
-    match file {
-        Some(file) => run.write(file)?,
-        None => print_or_keep("motion.csv", |out| run.write_csv(out))?,
+    match (stream, file) {
+        (Some(stream), Some(file)) => file.end(stream)?,
+        (None, Some(file)) => run.write(file)?,
+        (_, None) => print_or_keep("motion.csv", |out| run.write_csv(out))?,
+    }
+    if let Some(file) = file {
+        text::say_so_far(file.path(), file.instead_of());
     }
     match picture {
         Some((place, wanted)) => place.write_plot(&drawn(run, wanted)?),

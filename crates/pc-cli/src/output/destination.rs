@@ -8,10 +8,12 @@ use pc_report::picture::Drawing;
 use pc_run::files::error::FileError;
 use pc_run::files::target;
 use pc_run::files::target::Target;
+use pc_run::motion::run::Run;
 use pc_run::table::file::{Format, TableFile};
 
 use crate::error::CliError;
 use crate::output::standard_output;
+use crate::terminal::text;
 
 /// The file of the table of a motion; none for standard output, also as `-`.
 ///
@@ -82,6 +84,12 @@ impl Destination {
         Destination::file("-o", path, &encodings, ".html, .gif, .svg, .png or .pdf")
     }
 
+    /// This destination or, for what there is of a run that was interrupted, FILE.partial beside the file.
+    pub fn for_run(self, run: &Run) -> Destination {
+        let so_far = self.place.as_ref().filter(|_| run.is_interrupted()).and_then(Target::so_far);
+        Destination { place: so_far.or(self.place), ..self }
+    }
+
     /// How it is encoded.
     pub fn encoding(&self) -> Encoding {
         self.encoding
@@ -110,7 +118,7 @@ impl Destination {
     pub fn write_page(&self, page: &str) -> Result<(), CliError> {
         match &self.place {
             None => standard_output::print_or_keep("page.html", |out| out.write_all(page.as_bytes())),
-            Some(place) => Ok(place.write_or_keep(false, |out| out.write_all(page.as_bytes()))?),
+            Some(place) => write(place, page.as_bytes()),
         }
     }
 
@@ -137,7 +145,13 @@ impl Destination {
     fn write_bytes(&self, bytes: &[u8]) -> Result<(), CliError> {
         match &self.place {
             None => standard_output::print(|out| out.write_all(bytes)),
-            Some(place) => Ok(place.write_or_keep(false, |out| out.write_all(bytes))?),
+            Some(place) => write(place, bytes),
         }
     }
+}
+
+fn write(place: &Target, bytes: &[u8]) -> Result<(), CliError> {
+    place.write_or_keep(false, |out| out.write_all(bytes))?;
+    text::say_so_far(place.path(), place.instead_of());
+    Ok(())
 }

@@ -24,6 +24,7 @@ mod help;
 mod hidden_zeros;
 mod hostile_names;
 mod import;
+mod interrupted;
 mod joint_stops;
 mod jumping_rates;
 mod kept_on_constraints;

@@ -4,8 +4,6 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use crate::patience::{ended, started, until};
-
 use crate::each_model::{answer, each};
 use pc_model::Builtin;
 
@@ -365,33 +363,6 @@ fn a_closed_pipe_is_reported_by_the_exit_code_alone() {
     let text = stderr(&output);
     assert_eq!(code(&output), 6, "{text}");
     assert!(text.starts_with("Euler's top\n") && !text.contains("pc: "), "the summary alone: {text}");
-}
-
-#[cfg(unix)]
-#[test]
-fn ctrl_c_writes_the_rows_reached() {
-    let directory = tempfile::tempdir().expect("a directory");
-    let (path, checkpoint) = (directory.path().join("a.json"), directory.path().join("a.check"));
-    let mut run = pc();
-    run.args(["run", "euler-top", "--t-end", "1e9", "--samples", "1000000", "-o"]).arg(&path);
-    let mut child = started(run.arg("--checkpoint").arg(&checkpoint).stderr(Stdio::piped()));
-    // The first checkpoint is that of the start, the second one shows that the motion is under way.
-    let mut first = None;
-    until("a second checkpoint", || {
-        let now = std::fs::read(&checkpoint).ok();
-        let changed = first.is_some() && now != first;
-        first = first.take().or(now);
-        changed || child.has_ended()
-    });
-    child.signal("-INT");
-    let output = ended(child);
-    let text = stderr(&output);
-    assert_eq!(code(&output), 130, "{text}");
-    assert!(text.contains("interrupted at t = "), "{text}");
-    let json: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(path).expect("a file")).expect("JSON");
-    assert_eq!(json["summary"]["ending"], "interrupted");
-    assert!(!json["rows"].as_array().expect("rows").is_empty());
 }
 
 #[test]

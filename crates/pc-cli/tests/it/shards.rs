@@ -125,23 +125,23 @@ fn shards_that_do_not_belong_together_are_named() {
 }
 
 #[test]
-fn killed_shards_continue_where_they_were() {
+fn shards_cut_short_continue_where_they_were() {
     let place = Place::new(SLEIGH);
     let undisturbed = place.swept("whole.csv", &RANDOM);
-    let mut kills = 0;
+    let mut cuts = 0;
     for shard in ["1/2", "2/2"] {
         let journal = format!("a.csv.shard-{}-of-2", &shard[..1]);
         let arguments = sweep("a.csv", &RANDOM, shard);
         // Each time later than before, and at another place of a record.
         for bytes in (0..10).map(|i| 700 + 977 * i) {
-            if !place.killed(&arguments, &journal, bytes) {
+            if !place.cut(&arguments, &journal, bytes) {
                 break;
             }
-            kills += 1;
+            cuts += 1;
         }
         place.ends(&arguments, 0, &[]);
     }
-    assert!(kills >= 6, "{kills} kills");
+    assert!(cuts >= 6, "{cuts} cuts");
     let shards = ["a.csv.shard-1-of-2", "a.csv.shard-2-of-2"];
     assert!(merged(&place, "a.csv", &shards) == undisturbed);
 }

@@ -125,9 +125,9 @@ impl Place {
         self.at(&format!("{name}.partial"))
     }
 
-    /// Whether the sweep of `MANY` was killed when its journal had grown by `bytes`.
-    fn killed(&self, name: &str, bytes: u64) -> bool {
-        sweeps::killed(self.0.path(), &strs(&self.sweep(name, &MANY)), &self.journal(name), bytes)
+    /// Whether the sweep of `MANY` was cut short when its journal had grown by `bytes`.
+    fn cut(&self, name: &str, bytes: u64) -> bool {
+        sweeps::cut(self.0.path(), &strs(&self.sweep(name, &MANY)), &self.journal(name), bytes)
     }
 }
 
@@ -363,6 +363,17 @@ fn wrong_usage_suggests_a_correction() {
         (&["--samples", "0", "--random", "m=normal(0,1)"], "0 is not in"),
         (&["--vary", "m=1:2:3", "--threads", "0"], "--threads"),
         (&["--vary", "m=1:2:10000000000", "--vary", "k=1:2:10000000000"], "more than 2^64 members"),
+        (
+            &["--vary", "m=1:2:1000000", "--vary", "k=1:2:1000000"],
+            "pc: the sweep has 1000000000000 members, more than the limit of 1000000; ask for fewer values, or give \
+             --limit-members 1000000000000 if so many are meant\n",
+        ),
+        (&["--samples", "1000001", "--random", "m=normal(1,0.1)"], "give --limit-members 1000001 if"),
+        (
+            &["--vary", "m=1:2:8", "--shard", "1/4", "--limit-members", "7"],
+            "has 8 members, more than the limit of 7",
+        ),
+        (&["--vary", "m=1:2:3", "--limit-members", "0"], "0 is not in"),
     ] {
         let arguments = place.sweep("a.csv", options);
         ends(&strs(&arguments), 2, &[mention]);
@@ -375,21 +386,33 @@ fn wrong_usage_suggests_a_correction() {
     assert_eq!(fs::read_dir(place.0.path()).expect("a directory").count(), 1, "nothing is left");
 }
 
-/// So many members that the sweep lasts long enough to be killed.
+#[test]
+fn a_limit_on_members_that_is_not_passed_changes_nothing() {
+    let place = Place::new(MASSES);
+    let grid = ["--vary", "m=1:2:3", "--vary", "k=1:2:4"];
+    let limited = place.swept("b.csv", &[&grid[..], &["--limit-members", "12"]].concat());
+    assert!(place.swept("a.csv", &grid) == limited);
+    // A sweep that is meant is begun.
+    let mut many = place.sweep("c.csv", &["--vary", "m=1:2:1000001", "--limit-members", "1000001"]);
+    many.extend(["--limit-time", "0.5"].map(str::to_owned));
+    ends(&strs(&many), 4, &["of 1000001 members: more time would be needed"]);
+}
+
+/// So many members that the sweep lasts long enough to be cut short.
 const MANY: [&str; 6] = ["--samples", "600", "--random", "ω=normal(1,0.3)", "--random", "a=uniform(0.1,1)"];
 
 #[test]
-fn a_sweep_killed_again_and_again_gives_the_same_bytes() {
+fn a_sweep_cut_short_again_and_again_gives_the_same_bytes() {
     let place = Place::new(SLEIGH);
     let undisturbed = place.swept("whole.csv", &MANY);
-    let mut kills = 0;
+    let mut cuts = 0;
     // Random places with a fixed seed, the first of them in the header of the journal.
     let mut random = SplitMix64::new(12_345);
     for k in 0..12 {
         let bytes = if k == 0 { 1 } else { 1 + random.next_bits() % 6000 };
-        kills += u32::from(place.killed("a.csv", bytes));
+        cuts += u32::from(place.cut("a.csv", bytes));
     }
-    assert_eq!(kills, 12, "the sweep is over too soon for this test");
+    assert_eq!(cuts, 12, "the sweep is over too soon for this test");
     let resumed = place.swept("a.csv", &MANY);
     assert!(resumed == undisturbed);
     let table = lines(&resumed);
@@ -397,9 +420,9 @@ fn a_sweep_killed_again_and_again_gives_the_same_bytes() {
     assert_eq!(table.len(), 601);
 }
 
-/// The journal of a sweep that was killed.
+/// The journal of a sweep that was cut short.
 fn torn(place: &Place) -> Vec<u8> {
-    assert!(place.killed("a.csv", 20_000), "still at work");
+    assert!(place.cut("a.csv", 20_000), "still at work");
     fs::read(place.journal("a.csv")).expect("a journal")
 }
 
@@ -459,30 +482,40 @@ const MORE: [&str; 6] = ["--samples", "60000", "--random", "ω=normal(1,0.3)", "
 
 /// What comes of a sweep that is interrupted once its journal is long enough, unless it ends before.
 #[cfg(unix)]
-fn interrupted(place: &Place) -> Output {
+fn interrupted(place: &Place, signal: &str) -> Output {
     let mut child = started(pc(&strs(&place.sweep("a.csv", &MORE))).stderr(Stdio::piped()));
     let length = || fs::metadata(place.journal("a.csv")).map_or(0, |metadata| metadata.len());
     until("the journal grows", || length() >= 10_000 || child.has_ended());
-    child.signal("-INT");
+    child.signal(signal);
     ended(child)
+}
+
+/// As [`interrupted`], but before its end: on a busy machine a sweep may be faster than the signal.
+#[cfg(unix)]
+fn interrupted_midway(place: &Place, signal: &str) -> Output {
+    for _ in 0..20 {
+        let output = interrupted(place, signal);
+        if output.status.code() != Some(0) {
+            return output;
+        }
+        fs::remove_file(place.at("a.csv")).expect("a table");
+    }
+    panic!("each sweep ends before it is interrupted");
 }
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_keeps_finished_members() {
+fn ctrl_c_and_a_kill_keep_finished_members() {
     let place = Place::new(SLEIGH);
     let undisturbed = place.swept("whole.csv", &MORE);
-    let mut output = interrupted(&place);
-    // On a busy machine a sweep may end before it is interrupted.
-    for _ in 0..20 {
-        if output.status.code() != Some(0) {
-            break;
-        }
-        fs::remove_file(place.at("a.csv")).expect("a table");
-        output = interrupted(&place);
-    }
+    let output = interrupted_midway(&place, "-INT");
     assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
     assert!(stderr(&output).contains("of 60000 members; the same command continues from there"));
+    assert!(!place.at("a.csv").exists());
+    assert!(place.swept("a.csv", &MORE) == undisturbed);
+    fs::remove_file(place.at("a.csv")).expect("a table");
+    let output = interrupted_midway(&place, "-KILL");
+    assert_eq!(output.status.code(), None, "{}", stderr(&output));
     assert!(!place.at("a.csv").exists());
     assert!(place.swept("a.csv", &MORE) == undisturbed);
 }

@@ -113,7 +113,7 @@ fn the_bytes_depend_neither_on_threads_nor_on_shards() {
 }
 
 #[test]
-fn what_was_killed_goes_on_and_gives_the_same_bytes() {
+fn what_was_cut_short_goes_on_and_gives_the_same_bytes() {
     for (options, step) in [
         (["--of", "check", "--vary", "Ω=0:2:60"], 1001),
         (["--of", "linearize", "--vary", "pull=0:1.5:4000"], 20_001),
@@ -122,9 +122,9 @@ fn what_was_killed_goes_on_and_gives_the_same_bytes() {
         let undisturbed = place.swept("whole.csv", &options);
         let sweep = [&["sweep", "model.toml", "-o", "a.csv"][..], &options].concat();
         // Never at the same place of a record.
-        let kills = (0..4).filter(|i| place.killed(&sweep, "a.csv.partial", step + 77 * i)).count();
-        assert!(kills >= 1, "{options:?} is over too soon for this test");
-        // Unless the last one came to its end before it could be killed.
+        let cuts = (0..4).filter(|i| place.cut(&sweep, "a.csv.partial", step + 77 * i)).count();
+        assert!(cuts >= 1, "{options:?} is over too soon for this test");
+        // Unless the last one came to its end before.
         let is_left = place.at("a.csv.partial").exists();
         place.ends(&sweep, 0, if is_left { &["were finished before"] } else { &[] });
         assert!(fs::read(place.at("a.csv")).expect("a table") == undisturbed, "{options:?}");
@@ -215,7 +215,7 @@ fn options_that_say_nothing_are_refused() {
     assert_eq!(fs::read_dir(place.at("")).expect("a directory").count(), 1, "nothing is left");
     // What another sweep has left is not gone on with.
     let cut = ["sweep", "model.toml", "-o", "a.csv", "--vary", "g=1:2:300"];
-    assert!(place.killed(&[&cut[..], &["--of", "check"]].concat(), "a.csv.partial", 3000));
+    assert!(place.cut(&[&cut[..], &["--of", "check"]].concat(), "a.csv.partial", 3000));
     place.ends(&[&cut[..], &["--of", "linearize"]].concat(), 2, &["--of check, where now it is linearize"]);
 }
 

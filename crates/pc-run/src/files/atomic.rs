@@ -1,7 +1,7 @@
 //! Files that are replaced as a whole: a new file is written beside the old one and then put in its place.
 
 use std::fs::{self, File, Metadata, OpenOptions};
-use std::io::{self, BufWriter, Seek, Write};
+use std::io::{self, BufWriter, ErrorKind, Seek, Write};
 use std::path::Path;
 
 use tempfile::NamedTempFile;
@@ -51,6 +51,9 @@ impl Target {
 
     /// Moves a file that was made beside this place to the place itself.
     pub(super) fn put(&self, mut made: NamedTempFile) -> Result<(), (io::Error, Option<NamedTempFile>)> {
+        if self.instead_of.is_some() {
+            return self.put_anew(made);
+        }
         let replaced = made.as_file().sync_all().and_then(|()| match fs::metadata(&self.file) {
             Err(_) => Ok(true),
             Ok(old) => take_after(made.as_file(), &old),
@@ -60,6 +63,24 @@ impl Target {
             Ok(false) => overwrite(made.as_file_mut(), &self.file).map_err(|error| (error, Some(made))),
             Err(error) => Err((error, Some(made))),
         }
+    }
+
+    /// Moves a file to this place unless another one is there; as far as this is permitted, it is seen by whoever sees the one
+    /// that stays as it was.
+    fn put_anew(&self, made: NamedTempFile) -> Result<(), (io::Error, Option<NamedTempFile>)> {
+        if let Ok(original) = fs::metadata(self.original()) {
+            let _ = take_after(made.as_file(), &original);
+        }
+        if let Err(error) = made.as_file().sync_all() {
+            return Err((error, Some(made)));
+        }
+        made.persist_noclobber(&self.file).map(drop).map_err(|failed| {
+            let error = match failed.error.kind() {
+                ErrorKind::AlreadyExists => io::Error::new(ErrorKind::AlreadyExists, "it is there already"),
+                _ => failed.error,
+            };
+            (error, Some(failed.file))
+        })
     }
 }
 

@@ -1,13 +1,15 @@
 //! Rescues a result that cannot be written to its destination.
 
+use std::borrow::Cow;
 use std::io::{self, Read, Seek, SeekFrom};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use tempfile::{Builder, NamedTempFile};
 
 use crate::files::atomic::{FileWriter, fill};
 use crate::files::error::FileError;
 use crate::files::kept::Kept;
+use crate::files::so_far::beside;
 use crate::files::target::Target;
 
 impl Target {
@@ -32,15 +34,33 @@ impl Target {
                 Err(failed) => failed,
             },
         };
-        let name = self.file.file_name().map_or_else(|| "result".into(), |name| name.to_string_lossy());
-        let kept = elsewhere(&name, &write).map(Kept::Elsewhere).or_else(|| {
-            part.filter(|_| is_lines).and_then(|part| beside(&self.file, part)).map(Kept::Beginning)
+        let kept = elsewhere(&self.name(), &write).map(Kept::Elsewhere).or_else(|| {
+            part.filter(|_| is_lines).and_then(|part| self.keep_lines(part)).map(Kept::Beginning)
         });
         Err(FileError::Write {
             path: self.asked.display().to_string(),
             kept: kept.unwrap_or_default(),
             source,
         })
+    }
+
+    /// Keeps the complete lines of the part that could be written in FILE.partial or, if that file exists, in the directory of
+    /// temporary files.
+    pub(super) fn keep_lines(&self, mut part: NamedTempFile) -> Option<PathBuf> {
+        let end = end_of_lines(part.as_file_mut()).ok().filter(|&end| end > 0)?;
+        part.as_file().set_len(end).ok()?;
+        let path = beside(self.original());
+        let mut part = match part.persist_noclobber(&path) {
+            Ok(_) => return Some(path),
+            Err(failed) => failed.file,
+        };
+        part.rewind().ok()?;
+        elsewhere(&self.name(), |out| io::copy(&mut part, out).map(drop))
+    }
+
+    /// The name of the file that was to be written.
+    fn name(&self) -> Cow<'_, str> {
+        self.original().file_name().map_or(Cow::Borrowed("result"), |name| name.to_string_lossy())
     }
 }
 
@@ -53,16 +73,6 @@ pub fn elsewhere(name: &str, write: impl FnOnce(&mut FileWriter<'_>) -> io::Resu
     let mut file = Builder::new().prefix("pc-").suffix(&format!("-{end}")).tempfile().ok()?;
     fill(file.as_file_mut(), write).and_then(|()| file.as_file().sync_all()).ok()?;
     Some(file.keep().ok()?.1)
-}
-
-/// Keeps the complete lines of the part that could be written in FILE.partial, unless that file exists.
-pub(super) fn beside(file: &Path, mut part: NamedTempFile) -> Option<PathBuf> {
-    let end = end_of_lines(part.as_file_mut()).ok().filter(|&end| end > 0)?;
-    part.as_file().set_len(end).ok()?;
-    let mut name = file.as_os_str().to_owned();
-    name.push(".partial");
-    let path = PathBuf::from(name);
-    part.persist_noclobber(&path).ok().map(|_| path)
 }
 
 /// The number of bytes up to the end of the last complete line.

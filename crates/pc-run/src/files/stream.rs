@@ -8,7 +8,6 @@ use tempfile::NamedTempFile;
 use crate::files::error::FileError;
 use crate::files::kept::Kept;
 use crate::files::partial;
-use crate::files::rescue::beside;
 use crate::files::target::Target;
 use crate::table::csv;
 use crate::table::rows::Cell;
@@ -66,23 +65,22 @@ impl<'p> Stream<'p> {
         self.error.is_some()
     }
 
-    /// Puts the table at its place or, failing that, keeps its complete rows beside it.
+    /// Puts the table at a place in the directory in which it was begun or, failing that, keeps its complete rows beside it.
     ///
     /// # Errors
     /// [`FileError::Write`], which says where the table was kept.
-    pub fn end(self) -> Result<(), FileError> {
+    pub(crate) fn end(self, place: &Target) -> Result<(), FileError> {
         let Some(mut out) = self.out else { return Ok(()) };
         let flushed = self.error.map_or_else(|| out.flush(), Err);
         let (made, _) = out.into_parts(); // what could not be written is not tried again
         let (source, part) = match flushed {
             Err(error) => (error, Some(made)),
-            Ok(()) => match self.place.put(made) {
+            Ok(()) => match place.put(made) {
                 Ok(()) => return Ok(()),
                 Err(failed) => failed,
             },
         };
-        let kept =
-            part.and_then(|part| beside(&self.place.file, part)).map_or(Kept::Nowhere, Kept::Beginning);
-        Err(FileError::Write { path: self.place.path().display().to_string(), kept, source })
+        let kept = part.and_then(|part| place.keep_lines(part)).map_or(Kept::Nowhere, Kept::Beginning);
+        Err(FileError::Write { path: place.path().display().to_string(), kept, source })
     }
 }

@@ -21,6 +21,17 @@ pub struct Target {
     pub(super) file: PathBuf,
     /// A character device or FIFO, which is open from the beginning and written directly.
     pub(crate) device: Option<File>,
+    /// The file that stays as it was, for the place of an interrupted result.
+    pub(super) instead_of: Option<Original>,
+}
+
+/// A file that stays as it was.
+#[derive(Debug)]
+pub(super) struct Original {
+    /// The path as given.
+    pub(super) asked: PathBuf,
+    /// The file to which any links lead.
+    pub(super) file: PathBuf,
 }
 
 impl Target {
@@ -79,7 +90,7 @@ impl Target {
         if device.is_none() {
             try_directory(&file)?;
         }
-        Ok(Target { asked: path.to_owned(), file, device })
+        Ok(Target { asked: path.to_owned(), file, device, instead_of: None })
     }
 
     /// The path as given.

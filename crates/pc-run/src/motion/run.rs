@@ -111,6 +111,11 @@ impl Run {
         }
     }
 
+    /// Whether the observer ended the run, as Ctrl-C does: there is a part of the motion.
+    pub fn is_interrupted(&self) -> bool {
+        matches!(self.ending, Ending::Interrupted)
+    }
+
     /// The error for a run that was ended by the observer or by a time limit.
     pub fn stopped(&self) -> Option<RunError> {
         let t = self.statistics.current_time;

@@ -27,6 +27,17 @@ pub enum SweepError {
     /// The grid has more members than can be counted.
     #[error("the grid has more than 2^64 members; give fewer values")]
     TooMany,
+    /// There are more members than a sweep has by mistake.
+    #[error(
+        "the sweep has {members} members, more than the limit of {limit}; ask for fewer values, or give --limit-members {members} \
+         if so many are meant"
+    )]
+    Many {
+        /// The number of members.
+        members: u64,
+        /// The largest number that is begun.
+        limit: u64,
+    },
     /// Another process is working on the same file.
     #[error("another sweep is writing {}; wait for it, or give another -o", journal.display())]
     InUse {
@@ -171,6 +182,7 @@ impl SweepError {
             SweepError::UnknownValue(_)
             | SweepError::Twice { .. }
             | SweepError::TooMany
+            | SweepError::Many { .. }
             | SweepError::InUse { .. }
             | SweepError::Foreign { .. }
             | SweepError::OtherSweep { .. }

@@ -19,6 +19,7 @@ use std::time::Duration;
 use super::error::SweepError;
 use super::record::{Record, Status};
 use super::shard::Shard;
+use crate::files::so_far;
 use crate::motion::identity;
 use crate::motion::identity::Identity;
 
@@ -108,9 +109,7 @@ impl Tally {
 impl Journal {
     /// The path of the journal of a whole sweep, beside its table.
     pub(crate) fn beside(table: &Path) -> PathBuf {
-        let mut name = table.as_os_str().to_owned();
-        name.push(".partial");
-        PathBuf::from(name)
+        so_far::beside(table)
     }
 
     /// The journal of a shard: a new one, or the one that the same sweep left behind.

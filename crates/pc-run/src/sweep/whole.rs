@@ -55,6 +55,13 @@ pub struct SweepWishes {
     pub state: StateChoice,
     /// The number of threads; by default, one for each core. The result is the same for any number.
     pub threads: Option<NonZeroUsize>,
+    /// The largest number of members; by default, [`MOST_MEMBERS`](SweepWishes::MOST_MEMBERS).
+    pub limit_members: Option<u64>,
+}
+
+impl SweepWishes {
+    /// More members than these are more often a slip in a grid than meant.
+    pub const MOST_MEMBERS: u64 = 1_000_000;
 }
 
 /// A sweep to be computed.
@@ -87,7 +94,7 @@ impl Sweep {
     /// A sweep of a model; the names in `set` must not be varied.
     ///
     /// # Errors
-    /// [`RunError`] if the text of the model is wrong, or the work is not defined for it.
+    /// [`RunError`] if the text of the model is wrong, the work is not defined for it, or there are too many members.
     pub fn new(
         model: Model,
         variation: &Variation,
@@ -97,6 +104,10 @@ impl Sweep {
     ) -> Result<Sweep, RunError> {
         let design = Design::new(&model, variation, set)?;
         let (members, names) = (design.members(), design.names());
+        let limit = wishes.limit_members.unwrap_or(SweepWishes::MOST_MEMBERS);
+        if members > limit {
+            return Err(SweepError::Many { members, limit }.into());
+        }
         let (title, deadline) = (model.title().to_owned(), model.budget().deadline().clone());
         let (work, depends_on) = begun(wishes, model, design, observer)?;
         let sweep_columns = SweepColumns::new(wishes.of, &names, work.members().columns());

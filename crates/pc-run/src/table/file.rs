@@ -99,6 +99,25 @@ impl TableFile {
     pub fn stream(&self) -> Option<Stream<'_>> {
         (self.format == Format::Csv && self.place.device.is_none()).then(|| Stream::to(&self.place))
     }
+
+    /// Puts the rows of a stream at the place of this file, that of the stream or the one for as much as there
+    /// [`is so far`](TableFile::so_far).
+    ///
+    /// # Errors
+    /// [`FileError::Write`], which says where the rows were kept.
+    pub fn end(&self, stream: Stream<'_>) -> Result<(), FileError> {
+        stream.end(&self.place)
+    }
+
+    /// The file of what there is of a table that was interrupted, FILE.partial, so that FILE stays as it was; none for a device.
+    pub fn so_far(&self) -> Option<TableFile> {
+        Some(TableFile { place: self.place.so_far()?, format: self.format })
+    }
+
+    /// The path of the file that stays as it was, if this is the file of an interrupted table.
+    pub fn instead_of(&self) -> Option<&Path> {
+        self.place.instead_of()
+    }
 }
 
 fn format(path: &Path, formats: &[Format]) -> Result<Format, FileError> {
