@@ -402,3 +402,26 @@ fn more_stops_than_a_motion_can_hold_are_refused() {
          help: give fewer joints friction or rigid stops; stops with `stop_stiffness` need no surfaces to stay on\n"
     );
 }
+
+/// A pair of legs on smooth ground folds until its hinge strikes a stop without rebound. Nothing moves any more but along the ground.
+#[test]
+fn legs_rest_on_the_ground_and_at_the_stop_of_their_hinge() {
+    let leg = |name: &str, hung: &str, mass: f64, inertia: f64| {
+        format!(
+            "[bodies.{name}]\n{hung}\nmass = {mass:?}\ncenter = [0, 0, -0.5]\ninertia = [0, {inertia:?}, 0]\n\
+             [contacts.foot_{name}]\nbody = \"{name}\"\nshape = \"disc\"\naxis = [0, 1, 0]\nradius = 0.02\nat = [0, 0, -1]\n\
+             motion = \"slides\"\n"
+        )
+    };
+    let hinge = "parent = \"a\"\njoint = { kind = \"revolute\", axis = [0, 1, 0], limits = [-1.0, 0.5], restitution = 0 }";
+    let text = format!(
+        "[coordinates]\na_z = 0.9410609940028851\n\"a_φ\" = 0.4\nb = -0.8\n[gravity]\nacceleration = [0, 0, -9.81]\n{}{}",
+        leg("a", "joint = { kind = \"planar\", axis = [0, 1, 0] }", 1.0, 1.0 / 12.0),
+        leg("b", hinge, 1.5, 0.125)
+    );
+    let run = run(&text, &["--t-end", "1", "--samples", "201"]);
+    assert_eq!(times(&run, "b_lower").len(), 1);
+    // The stop is reached to within 1e-9 of the way.
+    assert!(column(&run, "b").into_iter().all(|b| b >= -1.0 - 1e-8), "{:?}", column(&run, "b"));
+    assert!(last(&run, "b'").abs() < 1e-9);
+}

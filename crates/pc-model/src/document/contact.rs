@@ -79,7 +79,7 @@ impl Contact {
     /// The index of the gap among the components; the velocities of slip follow it.
     pub(crate) const GAP: usize = 3;
     /// The indices of the velocities of slip among the components.
-    pub const SLIPS: [usize; 2] = [4, 5];
+    pub(crate) const SLIPS: [usize; 2] = [4, 5];
 
     /// The ends of the names of its components, for a ground whose height changes along these axes.
     pub(super) fn ends(along: &[usize]) -> impl Iterator<Item = &'static str> {

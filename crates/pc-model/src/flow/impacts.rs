@@ -10,6 +10,8 @@ use crate::flow::reading::inputs;
 
 /// A stop is reached where its gap is at most this fraction of the way between the ends.
 const REACHED: f64 = 1e-9;
+/// A sum below this fraction of its terms is their rounding.
+const CANCELS: f64 = 64.0 * f64::EPSILON;
 /// A joint is at rest at its stop if its speed is at most this fraction of that of the joint that strikes.
 const AT_REST: f64 = 1e-9;
 /// The number of rounds in which the impulses of several stops are found, and the relative change that ends them.
@@ -100,9 +102,18 @@ impl Impacts {
         balance(&mut reached);
         let moving = self.coordinates..self.coordinates + reached[0].w.len();
         let eta = &mut state[moving];
+        let mut terms: Vec<f64> = eta.iter().map(|eta| eta.abs()).collect();
         for stop in &reached {
-            eta.iter_mut().zip(&stop.a).for_each(|(eta, a)| *eta += stop.impulse * a);
+            for ((eta, term), a) in eta.iter_mut().zip(&mut terms).zip(&stop.a) {
+                *eta += stop.impulse * a;
+                *term = term.max((stop.impulse * a).abs());
+            }
         }
+        // What cancels is at rest; constraints would carry its rounding into the velocity of a joint that rests at its stop.
+        eta.iter_mut()
+            .zip(terms)
+            .filter(|(eta, term)| eta.abs() <= CANCELS * term)
+            .for_each(|(eta, _)| *eta = 0.0);
         // A single velocity takes its value to the last digit: zero is rest.
         for stop in reached.iter().filter(|stop| stop.impulse > 0.0) {
             let mut moved = stop.w.iter().enumerate().filter(|(_, w)| **w != 0.0);

@@ -115,6 +115,8 @@ fn work_done(run: &Run) -> String {
     parts.join(", ")
 }
 
+/// The number of characters of a formula that are shown.
+const LONGEST: usize = 80;
 /// If an event occurs no more often than this, all its occurrences are listed.
 const FEW: usize = 5;
 /// The remark on an event whose function is zero at the start and then moves on beyond zero.
@@ -160,9 +162,17 @@ fn slides(run: &Run) -> Vec<String> {
             }
             all => all.join(", "),
         };
-        format!("along {surface} = 0 {when}")
+        format!("along {} = 0 {when}", abridged(surface))
     };
     surfaces.into_iter().map(line).collect()
+}
+
+/// The beginning of a long formula.
+fn abridged(formula: &str) -> String {
+    match formula.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}…", &formula[..end]),
+        None => formula.to_owned(),
+    }
 }
 
 fn drifts(run: &Run) -> Vec<String> {

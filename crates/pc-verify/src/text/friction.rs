@@ -19,12 +19,15 @@ pub(crate) struct Friction {
     pub(crate) jumps: bool,
 }
 
-impl Friction {
-    /// The friction of all contacts, and its forces by name.
-    pub(crate) fn all(
-        document: &Document,
-        names: &Names,
-    ) -> Result<(Vec<Friction>, Vec<(String, Term)>), Unable> {
+/// The friction of all contacts.
+pub(crate) struct Frictions {
+    pub(crate) all: Vec<Friction>,
+    /// Its forces by name.
+    pub(crate) forces: Vec<(String, Term)>,
+}
+
+impl Frictions {
+    pub(crate) fn of(document: &Document, names: &Names) -> Result<Frictions, Unable> {
         let (mut all, mut forces) = (Vec::new(), Vec::new());
         for contact in &document.contacts {
             let Some(friction) = &contact.friction else { continue };
@@ -53,6 +56,6 @@ impl Friction {
             }
             all.push(Friction { constraint, per_normal_force, slips, jumps: friction.creep.is_none() });
         }
-        Ok((all, forces))
+        Ok(Frictions { all, forces })
     }
 }

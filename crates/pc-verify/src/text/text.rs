@@ -10,7 +10,7 @@ use pc_model::document::{AlgebraDefinition, Contact, Document, Expression, Named
 use crate::error::Unable;
 use crate::text::body::{Body, Turning, matrix};
 use crate::text::contacts_by_name;
-use crate::text::friction::Friction;
+use crate::text::friction::{Friction, Frictions};
 use crate::text::names::{Declared, Names};
 use crate::text::term::Term;
 use crate::text::tree::{Stop, Tree};
@@ -105,8 +105,8 @@ impl Text {
         let gravity = document.gravity.iter().flat_map(|gravity| &gravity.acceleration);
         names.gravity = gravity.map(|part| names.resolve(&part.ast)).collect::<Result<_, _>>()?;
         names.contacts = contacts_by_name::components(document, &tree, &names)?;
-        let (frictions, forces) = Friction::all(document, &names)?;
-        names.contacts.extend(forces);
+        let frictions = Frictions::of(document, &names)?;
+        names.contacts.extend(frictions.forces);
         let term = |expression: &Expression| names.resolve(&expression.ast);
         let terms = |list: &[Expression]| list.iter().map(term).collect::<Result<Vec<Term>, Unable>>();
         let energy = document.lagrangian.as_ref();
@@ -160,7 +160,7 @@ impl Text {
             lagrangian: part(energy.and_then(|l| l.lagrangian.as_ref()))?,
             dissipation: with(energy.and_then(|l| l.dissipation.as_ref()), drives.dissipation)?,
             bodies: bodies.chain(tree.bodies(&names)?.into_iter().map(Ok)).collect::<Result<_, Unable>>()?,
-            frictions,
+            frictions: frictions.all,
             stops: drives.stops,
             forces: document
                 .forces

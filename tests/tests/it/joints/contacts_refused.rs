@@ -124,12 +124,12 @@ attitude = [1, 0, 0, 0, 1, 0, 0, 0, 1]
 shape = "sphere"
 radius = 1
 motion = "rolls"
-friction = 0.1
+rubber = 0.1
 "#,
-        r#"m.toml:10:1: [contacts.c] friction: unknown entry `friction`
-    friction = 0.1
-    ^^^^^^^^
-  help: the entries here are body, shape, radius, axis, semi_axes, at, attitude, motion, normal, through, height, keeps"#,
+        r#"m.toml:10:1: [contacts.c] rubber: unknown entry `rubber`
+    rubber = 0.1
+    ^^^^^^
+  help: the entries here are body, shape, radius, axis, semi_axes, at, attitude, motion, friction, creep, normal, through, height, keeps"#,
     ),
     (
         r#"body = "ball"
@@ -254,7 +254,10 @@ radius = 1
 motion = "rolls"
 friction = 0.3
 "#,
-        "",
+        r#"m.toml:10:1: [contacts.c] friction: `friction` is of contacts that slide and lift off, not of one with `motion = "rolls"`
+    friction = 0.3
+    ^^^^^^^^
+  help: write `motion = "slides"`: with friction, the body also rolls where friction suffices"#,
     ),
     (
         r#"body = "ball"
@@ -264,7 +267,10 @@ motion = "slides"
 friction = 0.3
 keeps = true
 "#,
-        "",
+        r#"m.toml:10:1: [contacts.c] friction: `friction` is of contacts that slide and lift off, not of one with `keeps = true`
+    friction = 0.3
+    ^^^^^^^^
+  help: leave `keeps` out: N may be negative there, and friction would drive the body"#,
     ),
     (
         r#"body = "ball"
@@ -273,7 +279,10 @@ radius = 1
 motion = "slides"
 creep = 0.3
 "#,
-        "",
+        r#"m.toml:5:1: [contacts.c]: `friction` is missing
+    [contacts.c]
+    ^^^^^^^^^^^^
+  help: add `friction = "mu"`"#,
     ),
     (
         r#"body = "ball"
@@ -284,7 +293,10 @@ friction = 0.3
 [coordinates]
 ball_z = 1
 "#,
-        "",
+        r#"m.toml:5:11: [contacts] c: `c` has friction in two directions, which needs a velocity of creep
+    [contacts.c]
+              ^
+  help: write `creep = "v"`, a velocity far below those of interest"#,
     ),
     (
         r#"body = "ball"
@@ -296,7 +308,10 @@ creep = 1e-3
 [coordinates]
 ball_z = 1
 "#,
-        "",
+        r#"m.toml:10:12: [contacts.c] friction: a coefficient of friction is not negative, as -0.3 is
+    friction = -0.3
+               ^^^^
+  help: 0.1 to 1 are usual"#,
     ),
     (
         r#"body = "ball"
@@ -308,7 +323,10 @@ creep = 0
 [coordinates]
 ball_z = 1
 "#,
-        "",
+        r#"m.toml:11:9: [contacts.c] creep: a velocity of creep is positive, and not 0
+    creep = 0
+            ^
+  help: choose it far below the velocities of interest"#,
     ),
     (
         r#"body = "ball"
@@ -322,7 +340,10 @@ ball_z = 1
 [events.e]
 when = "T_c_1"
 "#,
-        "",
+        r#"m.toml:15:9: [events.e] when: `T_c_1` cannot be used in an event
+    when = "T_c_1"
+            ^^^^^
+  help: use declared names only"#,
     ),
     (
         r#"body = "ball"
@@ -331,7 +352,7 @@ radius = 1
 motion = "slides"
 friction = 0.3
 creep = 1e-3
-[contacts.d]
+[contacts.below]
 body = "ball"
 shape = "sphere"
 radius = 1
@@ -341,7 +362,10 @@ creep = 1e-3
 [coordinates]
 ball_z = 1
 "#,
-        "",
+        r#"m.toml:12:11: [contacts] below: the normal force of `below`, to which its friction is proportional, is not determined
+    [contacts.below]
+              ^^^^^
+  help: leave the height of the body a coordinate, and give a body one contact"#,
     ),
 ];
 
