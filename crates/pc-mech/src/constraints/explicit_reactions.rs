@@ -100,12 +100,11 @@ impl<'g> Multipliers<'g> {
     /// M + Cᵀ C and r − Cᵀ ċ, if that matrix is regular.
     fn with_inertia_of_constraints(&self) -> Option<(Matrix<Expr<'g>>, Vec<Expr<'g>>)> {
         let (graph, c, mass) = (self.graph(), &self.coefficients, self.equations.mass_matrix());
-        let column = |s: usize| -> Vec<Expr<'g>> { c.column(s).into_iter().collect() };
         let k = c.columns();
         let whole =
-            Matrix::from_fn(k, k, |s, r| mass[(s, r)] + graph.dot(column(s.max(r)), column(s.min(r))));
+            Matrix::from_fn(k, k, |s, r| mass[(s, r)] + graph.dot(c.column(s.max(r)), c.column(s.min(r))));
         let right = self.equations.right_hand_side().iter().enumerate();
-        let right = right.map(|(s, &r)| r + graph.dot(column(s), self.right.iter().copied())).collect();
+        let right = right.map(|(s, &r)| r + graph.dot(c.column(s), self.right.iter().copied())).collect();
         (graph.generic_rank(&whole.to_rows()) == k).then_some((whole, right))
     }
 
