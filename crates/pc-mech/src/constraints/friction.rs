@@ -32,7 +32,7 @@ pub struct ConstraintFriction<'g> {
 impl<'g> ConstraintFriction<'g> {
     /// Whether the friction jumps.
     fn jumps(&self) -> bool {
-        self.creep.is_none()
+        self.creep.is_none() && !self.slips.is_empty()
     }
 
     /// u, where friction is smooth.
@@ -192,7 +192,7 @@ impl<'g> NormalForces<'_, 'g> {
             .map(|friction| {
                 let u = match friction.creep {
                     Some(creep) => friction.smooth(creep),
-                    None => sides.next().into_iter().collect(),
+                    None => sides.by_ref().take(friction.slips.len()).collect(),
                 };
                 u.into_iter().map(|u| -friction.coefficient * u).collect()
             })

@@ -52,6 +52,13 @@ impl<'g> Assembler<'g, '_> {
             let moves = |&(_, slip): &(String, Expr<'g>)| self.graph.generic_rank(&[vec![slip]]) > 0;
             let (slipping, still): (Vec<_>, Vec<_>) =
                 contact.friction_forces().into_iter().zip(both).partition(moves);
+            if slipping.is_empty() {
+                let message =
+                    format!("the body of `{}` cannot slip, and friction does nothing", contact.name.text);
+                let place = friction.coefficient.whole();
+                let help = "leave `friction` out";
+                return Err(document.error(&place, MeaningError::OfJoint { message, help }));
+            }
             symbols.push(slipping.iter().map(|(name, _)| self.graph.symbol(name)).collect::<Vec<_>>());
             symbols.push(still.iter().map(|(name, _)| self.graph.symbol(name)).collect());
             let slips = slipping.into_iter().map(|(_, slip)| slip).collect();
