@@ -367,6 +367,29 @@ ball_z = 1
               ^^^^^
   help: leave the height of the body a coordinate, and give a body one contact"#,
     ),
+    (
+        r#"body = "ball"
+shape = "sphere"
+radius = 1
+motion = "slides"
+[coordinates]
+ball_z = 1
+lift = 1
+[bodies.lift]
+joint = { kind = "prismatic", axis = [0, 0, 1] }
+mass = 1
+[contacts.floor]
+body = "lift"
+shape = "sphere"
+radius = 1
+motion = "slides"
+friction = 0.2
+"#,
+        r#"m.toml:21:12: [contacts.floor] friction: the body of `floor` cannot slip, and friction does nothing
+    friction = 0.2
+               ^^^
+  help: leave `friction` out"#,
+    ),
 ];
 
 #[test]
