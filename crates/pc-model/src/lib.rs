@@ -43,6 +43,7 @@ mod flow;
 pub mod import;
 mod model;
 mod names;
+mod sealed;
 mod variables;
 
 pub use assembly::action::Action;
@@ -73,4 +74,5 @@ pub use model::given::GivenQuasiVelocity;
 pub use model::model::{GivenInput, Model, UnknownInput, UnknownIntegral, UnknownParameter};
 pub use model::start_values::{UnknownStart, UnknownValue};
 pub use model::tags::{TAGS, Tag};
+pub use sealed::{SealError, open, seal};
 pub use variables::Variables;

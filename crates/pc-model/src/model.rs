@@ -3,7 +3,7 @@
 //! A [`Document`](crate::Document) becomes a [`Model`](model::Model), from which equations are derived. Read
 //! `model` first; `blame` finds the entry in the file that causes an error of the derivation, `start_values` changes
 //! the start values, `given` and `choices` handle quasi-velocities requested in addition to those of the text,
-//! `builtin` contains the models that come with the library, and `tags` groups them by keywords.
+//! `stored` is a model as it is written to files, `builtin` contains the models that come with the library, and `tags` groups them by keywords.
 
 pub(crate) mod blame;
 pub(crate) mod builtin;
@@ -11,4 +11,5 @@ pub(crate) mod choices;
 pub(crate) mod given;
 pub(crate) mod model;
 pub(crate) mod start_values;
+pub(crate) mod stored;
 pub(crate) mod tags;

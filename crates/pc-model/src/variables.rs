@@ -1,7 +1,9 @@
 //! The variables of the state, which decide the form of the equations.
 
+use serde::{Deserialize, Serialize};
+
 /// The variables of the state in addition to the coordinates, which decide the equations of motion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Variables {
     /// The quasi-velocities of (9) or (30): the independent ones if constraints make the others vanish, otherwise
     /// all of them, with multipliers.

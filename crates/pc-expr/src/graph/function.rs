@@ -1,9 +1,11 @@
 //! The elementary functions an expression may contain, each with one name, one arity and one value.
 
+use serde::{Deserialize, Serialize};
+
 /// A function of one, two or three arguments.
 ///
 /// tan, cot and small integer powers are written in terms of these functions and of products.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[allow(missing_docs)] // each variant is the function of its name
 pub enum Function {
     Sin,

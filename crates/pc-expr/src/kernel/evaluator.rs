@@ -1,14 +1,17 @@
 //! A program with the kernel that runs it.
 
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
+
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::error::ExprError;
 use crate::kernel::kernel::{Entry, Interpreter, Kernel};
 use crate::program::program::Program;
 
 /// The kernel that runs a program. All kernels give the same values, up to the rounding of fused operations.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Backend {
     /// Machine code if the host allows it and the program is not too long, else the interpreter.
     #[default]
@@ -45,24 +48,61 @@ fn compile_with(program: Arc<Program>, leading: usize) -> Box<dyn Kernel> {
 }
 
 /// A program and its kernel, made on first use.
+///
+/// Clones share the machine code, whichever of them is the first to need it: it is compiled once for any number
+/// of threads. A stored evaluator is its program; machine code is made again where it is loaded.
 pub struct Evaluator {
+    code: Arc<Code>,
+    kernel: Option<Box<dyn Kernel>>,
+}
+
+/// What the clones of an evaluator have in common.
+#[derive(Serialize, Deserialize)]
+struct Code {
     program: Arc<Program>,
     backend: Backend,
     leading: usize,
-    kernel: Option<Box<dyn Kernel>>,
+    /// A kernel that is never run itself.
+    #[serde(skip)]
+    prototype: OnceLock<Box<dyn Kernel>>,
 }
 
 impl fmt::Debug for Evaluator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Evaluator").field("backend", &self.backend).finish_non_exhaustive()
+        f.debug_struct("Evaluator").field("backend", &self.code.backend).finish_non_exhaustive()
     }
 }
 
 impl Clone for Evaluator {
     /// An independent evaluator of the same code, for another thread.
     fn clone(&self) -> Evaluator {
-        let kernel = self.kernel.as_ref().map(|kernel| kernel.fork());
-        Evaluator { program: Arc::clone(&self.program), backend: self.backend, leading: self.leading, kernel }
+        Evaluator { code: Arc::clone(&self.code), kernel: self.kernel.as_ref().map(|kernel| kernel.fork()) }
+    }
+}
+
+impl Serialize for Evaluator {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.code.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Evaluator {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Evaluator, D::Error> {
+        let code = Code::deserialize(deserializer)?;
+        if code.leading > code.program.outputs_len() {
+            return Err(D::Error::custom("more leading outputs than outputs"));
+        }
+        Ok(Evaluator { code: Arc::new(code), kernel: None })
+    }
+}
+
+impl Code {
+    fn prototype(&self) -> &dyn Kernel {
+        let made = || match self.backend {
+            Backend::Fastest => compile_with(Arc::clone(&self.program), self.leading),
+            Backend::Interpreter => Box::new(Interpreter::new(Arc::clone(&self.program))),
+        };
+        &**self.prototype.get_or_init(made)
     }
 }
 
@@ -75,12 +115,13 @@ impl Evaluator {
 
     /// An evaluator of `program` with that many leading outputs.
     pub fn with_leading(program: Program, backend: Backend, leading: usize) -> Evaluator {
-        Evaluator { program: Arc::new(program), backend, leading, kernel: None }
+        let (program, prototype) = (Arc::new(program), OnceLock::new());
+        Evaluator { code: Arc::new(Code { program, backend, leading, prototype }), kernel: None }
     }
 
     /// The program.
     pub fn program(&self) -> &Arc<Program> {
-        &self.program
+        &self.code.program
     }
 
     /// Computes the outputs at (t, state, parameters), as [`Kernel::eval`] does.
@@ -104,15 +145,11 @@ impl Evaluator {
 
     #[inline]
     fn kernel(&mut self) -> &mut dyn Kernel {
-        let (program, backend, leading) = (&self.program, self.backend, self.leading);
-        let kernel = self.kernel.get_or_insert_with(|| match backend {
-            Backend::Fastest => compile_with(Arc::clone(program), leading),
-            Backend::Interpreter => Box::new(Interpreter::new(Arc::clone(program))),
-        });
-        &mut **kernel
+        let code = &self.code;
+        &mut **self.kernel.get_or_insert_with(|| code.prototype().fork())
     }
 
-    /// Makes the kernel, which clones made afterwards share.
+    /// Makes the kernel before it is needed.
     pub fn prepare(&mut self) {
         self.kernel();
     }
@@ -125,7 +162,7 @@ impl Evaluator {
     /// The value that is not finite at (t, state, parameters), if any; see
     /// [`Interpreter::diagnose`].
     pub fn diagnose(&self, t: f64, state: &[f64], parameters: &[f64]) -> Option<ExprError> {
-        Interpreter::new(Arc::clone(&self.program)).diagnose(t, state, parameters)
+        Interpreter::new(Arc::clone(&self.code.program)).diagnose(t, state, parameters)
     }
 
     /// The error for results that are not finite: that of [`diagnose`](Evaluator::diagnose) or, if

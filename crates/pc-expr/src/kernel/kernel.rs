@@ -24,7 +24,7 @@ pub type Entry = unsafe extern "C" fn(
 ) -> bool;
 
 /// Computes the outputs of a [`Program`]; all kernels of a program give the same values.
-pub trait Kernel: Send {
+pub trait Kernel: Send + Sync {
     /// Computes the outputs at (t, state, parameters).
     ///
     /// The slices have the lengths `state_len`, `parameters_len` and `outputs_len` of the program.

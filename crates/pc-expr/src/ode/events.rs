@@ -2,13 +2,15 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::forward;
 use crate::ode::failure::Failure;
 use crate::program::program::Program;
 
 /// The direction in which a function passes through zero along the integration: backwards in time if
 /// the integration goes backwards.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 pub enum Direction {
     /// From below.
     Rising,
@@ -31,7 +33,7 @@ impl Direction {
 }
 
 /// The properties of an event besides its function.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Event {
     name: String,
     direction: Direction,

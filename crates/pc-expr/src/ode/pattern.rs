@@ -1,5 +1,7 @@
 //! Zero patterns of matrices.
 
+use serde::{Deserialize, Serialize};
+
 /// The zero pattern of a matrix in compressed columns: the rows of the entries that may be nonzero, column by
 /// column, in ascending order within each column.
 ///
@@ -9,7 +11,7 @@
 /// assert_eq!(pattern.column_starts(), [0, 1, 3]);
 /// assert_eq!(pattern.row_indices(), [0, 0, 1]);
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Pattern {
     rows: usize,
     starts: Vec<usize>,

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 /// A surface g(t, y, p) = 0 on which f jumps.
 ///
 /// Where a motion passes it, derivatives of the motion with respect to p and y₀ also jump, if p and y₀ move
@@ -10,7 +12,7 @@ use std::fmt;
 ///   s⁺ = s⁻ + (f⁻ − f⁺) ∂τ,   ∂τ the derivative of the time τ of the passage,
 ///
 /// a term that is not contained in any derivative of f.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RateJump {
     /// The text of g.
     pub surface: String,

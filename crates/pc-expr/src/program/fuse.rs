@@ -1,12 +1,15 @@
 //! Fusing products into the sums that use them, and counting operations.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
 
 use crate::program::program::{Instruction, Program, Register};
 
 /// The number of operations of each kind in one evaluation; fused multiply-adds count as one.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Cost(BTreeMap<&'static str, usize>);
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Cost(BTreeMap<Cow<'static, str>, usize>);
 
 impl Cost {
     /// The number of operations of all kinds.
@@ -15,8 +18,8 @@ impl Cost {
     }
 
     /// Kinds (`add`, `sub`, `mul`, `div`, `neg`, `fma`, names of functions) with their counts, in alphabetical order.
-    pub fn iter(&self) -> impl Iterator<Item = (&'static str, usize)> + '_ {
-        self.0.iter().map(|(&kind, &count)| (kind, count))
+    pub fn iter(&self) -> impl Iterator<Item = (&str, usize)> {
+        self.0.iter().map(|(kind, &count)| (&**kind, count))
     }
 
     fn of(code: &[Instruction]) -> Cost {
@@ -34,7 +37,7 @@ impl Cost {
                 | Instruction::NegateMultiplySubtract(..) => "fma",
                 Instruction::Call(function, _) => function.name(),
             };
-            *counts.entry(kind).or_insert(0) += 1;
+            *counts.entry(Cow::Borrowed(kind)).or_insert(0) += 1;
         }
         Cost(counts)
     }

@@ -1,11 +1,13 @@
 //! Straight-line programs: chosen outputs of a graph as a tape that is independent of the graph.
 
+use serde::{Deserialize, Serialize};
+
 use crate::graph::expr::Expr;
 use crate::graph::function::Function;
 use crate::print::piece::{Binding, Piece, number};
 
 /// A register of the tape: constants first, then inputs, then one for each instruction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Register(pub(crate) u32);
 
 impl Register {
@@ -16,7 +18,7 @@ impl Register {
 }
 
 /// One operation; its result goes to the next register.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Instruction {
     /// a + b
     Add(Register, Register),
@@ -89,7 +91,10 @@ pub struct Inputs<'g> {
 }
 
 /// A tape of operations that computes some outputs from (t, state, parameters). Owned, `Send` and `Sync`.
-#[derive(Clone, Debug)]
+///
+/// One that is read from elsewhere is refused unless every register is computed before it is read.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(try_from = "Unchecked")]
 pub struct Program {
     pub(crate) constants: Vec<f64>,
     pub(crate) names: Vec<String>,
@@ -97,6 +102,41 @@ pub struct Program {
     pub(crate) parameters: usize,
     pub(crate) code: Vec<Instruction>,
     pub(crate) outputs: Vec<Register>,
+}
+
+/// A program as it was stored.
+#[derive(Deserialize)]
+struct Unchecked {
+    constants: Vec<f64>,
+    names: Vec<String>,
+    state: usize,
+    parameters: usize,
+    code: Vec<Instruction>,
+    outputs: Vec<Register>,
+}
+
+impl TryFrom<Unchecked> for Program {
+    type Error = &'static str;
+
+    fn try_from(stored: Unchecked) -> Result<Program, &'static str> {
+        let Unchecked { constants, names, state, parameters, code, outputs } = stored;
+        let program = Program { constants, names, state, parameters, code, outputs };
+        let inputs = program.state.checked_add(program.parameters).and_then(|inputs| inputs.checked_add(1));
+        if inputs != Some(program.names.len()) {
+            return Err("a program names other inputs than it has");
+        }
+        let first = program.first_result();
+        let is_known = |(i, operation): (usize, &Instruction)| {
+            operation.operands().all(|register| register.index() < first + i)
+        };
+        let all = program.registers_len();
+        if !program.code.iter().enumerate().all(is_known)
+            || !program.outputs.iter().all(|register| register.index() < all)
+        {
+            return Err("a program reads a register before it is computed");
+        }
+        Ok(program)
+    }
 }
 
 impl Program {

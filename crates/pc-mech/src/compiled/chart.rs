@@ -2,6 +2,7 @@
 
 use pc_algebra::Matrix;
 use pc_expr::{Backend, Evaluator, Expr, Graph, Inputs, Program};
+use serde::{Deserialize, Serialize};
 
 use crate::error::MechError;
 use crate::numeric::singular_values::SingularValues;
@@ -30,7 +31,7 @@ const SECTIONS: usize = 45;
 ///
 /// Only ratios of determinants count, so that constant factors are left out; of a disk that rolls cos θ remains. Quasi-velocities
 /// defined by b are not watched: the determinant of b would cost as much as a step of a small system.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Chart {
     coordinates: usize,
     parameters: usize,
@@ -48,7 +49,7 @@ pub(crate) struct Chart {
 }
 
 /// A determinant that is a short expression, without constant factors.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Short {
     /// The determinant, then its derivatives.
     program: Evaluator,
@@ -57,7 +58,7 @@ struct Short {
 }
 
 /// The determinant at one end of a step.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct End {
     t: f64,
     x: Vec<f64>,

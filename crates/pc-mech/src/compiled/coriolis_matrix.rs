@@ -1,6 +1,7 @@
 //! The Coriolis matrix, compiled.
 
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::elimination::columns::Storage;
 use crate::compiled::elimination::products::Products;
@@ -31,7 +32,7 @@ use crate::tree::system::TreeSystem;
 /// assert_eq!(entries, [0.0, 10.0, -10.0, 6.0]); // −r φ' in the first row
 /// # Ok::<(), pc_mech::MechError>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CoriolisMatrix {
     entries: Entries,
     names: Vec<String>,
@@ -39,7 +40,7 @@ pub struct CoriolisMatrix {
     parameters: Vec<f64>,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 enum Entries {
     /// Column by column.
     Whole(Evaluator),

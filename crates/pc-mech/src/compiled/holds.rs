@@ -1,12 +1,13 @@
 //! What holds a motion on the surfaces between its pieces.
 
 use pc_expr::{Backend, Evaluator, Expr, Program, SlidingRange, Surface};
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::first_order::FirstOrder;
 use crate::error::MechError;
 
 /// What holds a motion on each of its surfaces.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Holds {
     kinds: Vec<Kind>,
     /// The component of the state that each surface holds at a value, if it is a single one.
@@ -17,7 +18,7 @@ pub(super) struct Holds {
 }
 
 /// What holds a motion on one surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 enum Kind {
     /// The forces on both sides.
     Jump,

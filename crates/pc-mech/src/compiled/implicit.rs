@@ -1,6 +1,7 @@
 //! Solves nonlinear equations for their unknowns by Newton's method with line search.
 
 use pc_expr::{Backend, Evaluator, ExprError, Pattern, Program};
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::elimination::solver::Solver;
 use crate::compiled::failure::{EvaluationFailure, check_finite};
@@ -29,7 +30,7 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 ///
 /// Every solution starts from the same guess, so that w depends on (t, y) only, to the last bit; only if the
 /// iteration fails does it start again from the last solution.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Newton {
     /// Computes, from (t, (y, w)), the nonzero entries of the lower triangle of M, then p, then r.
     equations: Evaluator,
@@ -43,7 +44,7 @@ pub(crate) struct Newton {
 }
 
 /// The unknowns w and the values at w; k of each.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Iterate {
     point: Vec<f64>,
     /// F

@@ -2,6 +2,7 @@
 
 use pc_algebra::Matrix;
 use pc_expr::{Backend, Evaluator, Inputs, Program};
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::failure::check_finite;
 use crate::compiled::inverse_dynamics::InverseDynamics;
@@ -34,7 +35,7 @@ use crate::numeric::least_squares::LeastSquares;
 /// assert!((change[0] + 1.0).abs() < 1e-15 && (change[1] - 2.0).abs() < 1e-15);
 /// # Ok::<(), pc_mech::MechError>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ImpulseResponse {
     /// M
     inverse: InverseDynamics,

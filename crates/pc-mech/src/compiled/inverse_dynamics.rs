@@ -1,6 +1,7 @@
 //! The forces that accelerations require.
 
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::elimination::columns::Storage;
 use crate::compiled::elimination::products::Products;
@@ -32,7 +33,7 @@ use crate::error::MechError;
 /// assert!((torque[0] - (3.0 + 0.2 + 9.81 * f64::sin(0.5))).abs() < 1e-14);
 /// # Ok::<(), pc_mech::MechError>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct InverseDynamics {
     /// From (t, (y, η̇), p).
     forces: Evaluator,

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Inputs, Pattern, Program};
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::elimination::solver::Solver;
 use crate::compiled::failure::{EvaluationFailure, check_finite};
@@ -14,7 +15,7 @@ use crate::system::system::System;
 
 /// The compiled conversion between states (x, η) and (x, y) of one system, by y_s = ∂L/∂η_s and η_s = ∂H/∂y_s
 /// (Legendre).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct LegendreTransform {
     /// Names of x, η, y, z.
     names: [Vec<String>; 4],
@@ -26,7 +27,7 @@ pub struct LegendreTransform {
 }
 
 /// How η is determined by (x, y).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 enum QuasiVelocities {
     Closed(Evaluator),
     Linear(Box<Linear>),
@@ -34,7 +35,7 @@ enum QuasiVelocities {
 }
 
 /// The solution of p(w) = r with w = (η, μ), by Newton's method.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Implicit {
     newton: Newton,
     solver: Solver,
@@ -48,7 +49,7 @@ struct Implicit {
 }
 
 /// The numerical solution of M w = r with w = (η, μ).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Linear {
     /// Computes, from (t, (x, y)), the nonzero entries of the lower triangle of M, then r.
     equations: Evaluator,

@@ -1,6 +1,7 @@
 //! Numerical factors of a mass matrix.
 
 use pc_expr::Pattern;
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::elimination::dense_ldl::DenseLdl;
 use crate::compiled::failure::EvaluationFailure;
@@ -16,7 +17,7 @@ use crate::compiled::failure::EvaluationFailure;
 /// assert_eq!(right, [1.0, 1.0]);
 /// # Ok::<(), pc_mech::SingularMatrix>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct MassFactors {
     factors: DenseLdl,
     lower: Pattern,

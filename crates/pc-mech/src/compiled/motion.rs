@@ -4,6 +4,7 @@ use pc_algebra::Matrix;
 use pc_expr::{
     Cost, Digest, Evaluator, Expr, Failure, Method, Pattern, Program, RateJump, VariedSeries, VectorField,
 };
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::change_point::watch::Watch;
 use crate::compiled::chart::Chart;
@@ -26,7 +27,7 @@ use crate::system::system::System;
 
 /// The compiled first-order system ẏ = f(t, y) for y = (x, η, z), which owns its data and is independent of the
 /// graph.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Motion {
     /// The names of the n coordinates, then of the k quasi-velocities or momenta, then of the first-order
     /// states.
@@ -57,7 +58,7 @@ pub struct Motion {
 }
 
 /// How f is computed.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) enum Form {
     Unrolled(Box<Unrolled>),
     Staged(Box<Staged>),
@@ -74,7 +75,7 @@ pub(super) enum Form {
 ///   ẏ = ∂p/∂t + (∂p/∂x) ẋ + (∂p/∂z) ż + M η̇ = (c_rs^m η_r + c_0s^m) y_m + X_s L + Q_s + C_αs λ_α.
 ///
 /// In both motions the first-order states z come last.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct InMomenta {
     pub(super) transform: LegendreTransform,
     pub(super) inner: Box<Motion>,
@@ -98,7 +99,7 @@ pub(crate) struct InMomenta {
 
 /// Computes derivatives with respect to symbols q, from (t, (x, η, z, η̇)): the columns of ∂ẏ/∂q and (−∂p/∂q,
 /// ∂g/∂q) one after the other; then those of ∂ẏ/∂η and of M.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Slopes {
     pub(super) symbols: usize,
     pub(super) multipliers: usize,
@@ -112,7 +113,7 @@ pub(super) struct Slopes {
 }
 
 /// The surfaces between the pieces of a motion, and the motion on given sides of them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Switches {
     /// The functions that vanish on the surfaces, as text.
     pub(super) names: Vec<String>,
@@ -130,6 +131,7 @@ pub(crate) struct Switches {
     /// The sides on which the motion is held, if it is held.
     pub(super) sides: Option<Vec<f64>>,
     /// The motion along these surfaces, made on first use.
+    #[serde(skip)]
     pub(super) along: Option<Along>,
 }
 

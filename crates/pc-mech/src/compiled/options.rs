@@ -1,6 +1,7 @@
 //! Options for compilation.
 
 use pc_expr::Backend;
+use serde::{Deserialize, Serialize};
 
 /// The parts to compile besides the right-hand side, and the kernel. Each derivative takes time to compile,
 /// above all the Jacobian of a large system.
@@ -23,7 +24,7 @@ use pc_expr::Backend;
 /// assert_eq!(by_parameters[3], -0.5f64.sin() / 2.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CompileOptions {
     pub(crate) backend: Backend,
     pub(crate) jacobian: bool,
@@ -36,7 +37,7 @@ pub struct CompileOptions {
 /// The method that solves for the accelerations of [bodies joined by joints](crate::Tree), and of bodies with
 /// positions that carry one another, such as the links of a chain in angles from the vertical. All methods give the
 /// same numbers up to rounding errors.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TreeElimination {
     /// Joint by joint if that takes fewer operations, which is the case for all large trees.
     #[default]

@@ -9,6 +9,7 @@ use std::ops::{Add, Mul, Neg};
 use pc_expr::{
     Backend, Evaluator, Expr, ExprError, Folding, Function, Graph, Inputs, Number, Program, Scalar,
 };
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::point::Point;
@@ -25,7 +26,7 @@ const TINY: f64 = 1e-300;
 const SPACING: f64 = 4.0 * f64::MIN_POSITIVE;
 
 /// Compiled functions with bounds on their rounding errors.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Measured {
     functions: Evaluator,
     /// The values, then the bounds.

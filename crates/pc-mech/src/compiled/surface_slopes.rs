@@ -1,12 +1,13 @@
 //! The derivatives of the functions that vanish on the surfaces between pieces of a motion.
 
 use pc_expr::{Backend, Evaluator, Expr, Program};
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::first_order::FirstOrder;
 use crate::error::MechError;
 
 /// The derivatives of the functions with respect to time, state and parameters.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct SurfaceSlopes {
     pub(super) entries: Evaluator,
     /// The surface and the column of each entry; the columns are time, state, parameters.

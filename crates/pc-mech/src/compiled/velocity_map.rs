@@ -1,6 +1,7 @@
 //! Velocities and momenta as linear maps of the quasi-velocities.
 
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program};
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::failure::check_finite;
 use crate::compiled::point::Point;
@@ -29,7 +30,7 @@ use crate::error::{FrameError, MechError};
 /// assert_eq!((jacobian, rest, rates), ([0.0, 2.0], [0.0, 0.0], [-18.0, 0.0]));
 /// # Ok::<(), pc_mech::MechError>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct VelocityMap {
     /// A column by column, then a_0.
     map: Evaluator,

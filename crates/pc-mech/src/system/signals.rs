@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::system::table::{Interpolation, Table};
 
 /// A time at which an input has no value.
@@ -19,7 +21,7 @@ pub struct OutsideTable {
 }
 
 /// Inputs with their tables, for a [`Motion`](crate::Motion) that they [drive](crate::Motion::driven_by).
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Signals {
     list: Vec<Signal>,
     /// The times of all tables, in ascending order.
@@ -28,7 +30,7 @@ pub struct Signals {
     between: Option<(f64, f64)>,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Signal {
     name: String,
     /// The index of the input among the parameters.

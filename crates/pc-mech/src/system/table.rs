@@ -1,9 +1,11 @@
 //! Functions of time given by their values, and perhaps their rates, at increasing times.
 
+use serde::{Deserialize, Serialize};
+
 use crate::system::spline::slopes_of_spline;
 
 /// How a table is interpolated between its times.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Interpolation {
     /// By straight lines between neighbouring values.
     Linear,
@@ -28,7 +30,7 @@ pub struct KnownRates {
 }
 
 /// A function of time given by its values at increasing times.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Table {
     times: Vec<f64>,
     values: Vec<f64>,

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use pc_expr::parse::AstKind;
 use pc_expr::{Graph, Inputs, Interpreter, Kernel, Program};
 use pc_mech::Table;
+use serde::{Deserialize, Serialize};
 
 use crate::assembly::tables;
 use crate::diagnostics::error::ModelError;
@@ -37,6 +38,14 @@ enum Formula {
     Unknown,
     /// An invalid expression or table.
     Wrong(ModelError),
+}
+
+/// What replaces the value of a parameter or input in a document.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) enum Change {
+    None,
+    Number(f64),
+    Table(Arc<Table>),
 }
 
 /// The names of parameters and inputs, in their order, each with its expression; an input with a table has no
@@ -146,6 +155,36 @@ impl Parameters {
                 *formula = Formula::Number;
             }
         }
+    }
+
+    /// What has replaced the values of the document, for each parameter.
+    pub(crate) fn changes(&self, document: &Document) -> Vec<Change> {
+        let change = |((formula, &value), (_, written)): ((&Formula, &f64), (&Name, Option<&Expression>))| {
+            match formula {
+                Formula::Number if written.is_some() => Change::Number(value),
+                Formula::Table(table) => Change::Table(Arc::clone(table)),
+                _ => Change::None,
+            }
+        };
+        self.formulas.iter().zip(&self.values).zip(written(document)).map(change).collect()
+    }
+
+    /// Replaces values by what [`changes`](Parameters::changes) has found.
+    pub(crate) fn change(&mut self, changes: Vec<Change>) {
+        for (place, change) in changes.into_iter().enumerate().take(self.values.len()) {
+            match change {
+                Change::None => {}
+                Change::Number(value) => {
+                    self.values[place] = value;
+                    self.formulas[place] = Formula::Number;
+                }
+                Change::Table(table) => {
+                    self.values[place] = table.at(self.t_start).unwrap_or(f64::NAN);
+                    self.formulas[place] = Formula::Table(table);
+                }
+            }
+        }
+        self.follow();
     }
 
     /// Whether the value with index `place` is given by an expression in others.

@@ -2,6 +2,7 @@
 
 use pc_expr::{Failure, VectorField};
 use pc_mech::{Motion, Multipliers};
+use serde::{Deserialize, Serialize};
 
 /// Constraints may change a value that a reset has set by at most this, absolute or relative, whichever is
 /// larger; a greater change is more than rounding error.
@@ -10,7 +11,7 @@ const OFF: f64 = 1e-8;
 const LENGTHENED: f64 = 10.0;
 
 /// Moves states onto the constraints after resets.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct ConstrainedResets {
     /// The motion under constraints, in all quasi-velocities.
     motion: Motion,

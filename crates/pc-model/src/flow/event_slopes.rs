@@ -2,6 +2,7 @@
 
 use pc_expr::{Backend, Evaluator, Expr, Program};
 use pc_mech::MechError;
+use serde::{Deserialize, Serialize};
 
 use crate::assembly::assembly::Assembly;
 use crate::diagnostics::error::ModelError;
@@ -10,7 +11,7 @@ use crate::model::model::Model;
 
 /// For each event, the derivatives with respect to (t, y, p) of its function and of the values that its reset
 /// writes, where y = (x, η, z) with the free η; the other η are functions of the free ones.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct EventSlopes {
     dim: usize,
     /// The number of symbols in (t, y, p).
@@ -20,7 +21,7 @@ pub(super) struct EventSlopes {
 
 /// The components of the state that a reset writes, and the rows of derivatives of the event's function and
 /// of these components.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Compiled {
     places: Vec<usize>,
     rows: Evaluator,

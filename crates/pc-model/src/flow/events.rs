@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use pc_expr::{Backend, Evaluator, Event, Events, Failure, Inputs, Program};
 use pc_mech::{MechError, Motion, Signals};
+use serde::{Deserialize, Serialize};
 
 use crate::assembly::assembly::Assembly;
 use crate::assembly::constraint_treatment::ConstraintFormulation;
@@ -15,7 +16,7 @@ use crate::flow::reading::{Reading, inputs};
 use crate::model::model::Model;
 
 /// The events of a model, compiled. Functions and resets are evaluated on (x, η) with all quasi-velocities.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FlowEvents {
     events: Vec<Event>,
     reading: Reading,
@@ -38,14 +39,14 @@ pub struct FlowEvents {
 }
 
 /// Components of (x, η, z) and their new values.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Reset {
     places: Vec<usize>,
     values: Evaluator,
 }
 
 /// Reactions of contacts, read from the observables of the motion.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Reactions {
     motion: Motion,
     /// The index of each among the observables; `None` for the reaction of a constraint that was dropped.

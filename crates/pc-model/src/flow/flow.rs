@@ -1,6 +1,7 @@
 //! The vector field to be integrated, its events, and the columns of a table of its states.
 
 use pc_mech::{LegendreTransform, MechError, Motion};
+use serde::{Deserialize, Serialize};
 
 use crate::assembly::assembly::Assembly;
 use crate::assembly::constraint_treatment::ConstraintFormulation;
@@ -13,7 +14,7 @@ use crate::model::model::Model;
 use crate::variables::Variables;
 
 /// Equations of motion of a model, compiled and evaluated at the start, with the columns of a table.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Flow {
     /// The vector field.
     pub motion: Motion,

@@ -2,6 +2,7 @@
 
 use pc_expr::{Backend, Evaluator, Failure, Program};
 use pc_mech::{ImpulseResponse, MechError};
+use serde::{Deserialize, Serialize};
 
 use crate::assembly::assembly::Assembly;
 use crate::assembly::event::Impact;
@@ -25,7 +26,7 @@ const SETTLED: f64 = 1e-16;
 ///
 /// so that v⁺ = −e v⁻. Where joints rest at other stops, the impulses of all of these, none of them negative, keep the
 /// joints from passing.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Impacts {
     response: ImpulseResponse,
     /// The gap, the way between the ends, v, e and w of each stop.

@@ -2,13 +2,14 @@
 
 use pc_expr::{Backend, Evaluator, Expr, Inputs, Program, SymbolPlaces};
 use pc_mech::{LegendreTransform, MechError, Signals, System};
+use serde::{Deserialize, Serialize};
 
 use crate::assembly::assembly::Assembly;
 use crate::diagnostics::error::ModelError;
 use crate::flow::free_form::FreeForm;
 
 /// The conversion of a state to coordinates and all quasi-velocities of the model, and back.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Reading {
     /// Number of coordinates.
     pub(super) coordinates: usize,
@@ -28,7 +29,7 @@ pub(super) struct Reading {
 }
 
 /// Quasi-velocities of a state that are not those of the model.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Change {
     /// The values of these quasi-velocities as functions of (t, x, η, z) with the free η.
     written: Evaluator,

@@ -2,6 +2,7 @@
 
 use pc_expr::Evaluator;
 use pc_mech::{Equations, Expr, VelocityMap};
+use serde::{Deserialize, Serialize};
 
 use crate::assembly::assembly::Assembly;
 use crate::diagnostics::error::ModelError;
@@ -17,7 +18,7 @@ use crate::names::scope::Scope;
 use crate::variables::Variables;
 
 /// The common mass centre of the bodies of a model as a function of the state.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CentreOfMass {
     /// Its position along fixed axes, from t, (x, η, z) and the parameters.
     pub position: Evaluator,

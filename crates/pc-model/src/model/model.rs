@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use pc_expr::{Budget, Graph, Limits};
 use pc_mech::Table;
+use serde::{Deserialize, Serialize};
 
 use crate::assembly::parameters::Parameters;
 use crate::diagnostics::error::ModelError;
@@ -11,23 +12,27 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::source::Place;
 use crate::document::Document;
 use crate::model::given::GivenQuasiVelocity;
+use crate::model::stored::StoredModel;
 
 /// A model whose parameters can be set and that can be turned into a mechanical system.
-#[derive(Clone, Debug)]
+///
+/// It is stored as its text and what was set, without the limits on its derivations.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(into = "StoredModel", try_from = "StoredModel")]
 pub struct Model {
     document: Arc<Document>,
-    parameters: Parameters,
+    pub(super) parameters: Parameters,
     /// Start values that replace those of the document, each with its index.
-    starts: Vec<(usize, f64)>,
-    projects_start: bool,
+    pub(super) starts: Vec<(usize, f64)>,
+    pub(super) projects_start: bool,
     /// The indices of start values that stay fixed when the start is moved onto constraints.
-    held_starts: Vec<usize>,
-    observes_reactions: bool,
+    pub(super) held_starts: Vec<usize>,
+    pub(super) observes_reactions: bool,
     /// Whether motions and events are to be differentiated with respect to parameters.
-    by_parameters: bool,
-    by_time: bool,
+    pub(super) by_parameters: bool,
+    pub(super) by_time: bool,
     /// The names of the integrals to be kept.
-    kept: Vec<String>,
+    pub(super) kept: Vec<String>,
     /// The limits on derivations from this model.
     budget: Budget,
     /// The quasi-velocities, or coordinates, on which external forces act.

@@ -1,5 +1,7 @@
 //! The rank of the constraints along a motion, as known from step to step.
 
+use serde::{Deserialize, Serialize};
+
 use crate::compiled::change_point::collocation::Collocation;
 use crate::compiled::elimination::saddle_point::{Independence, Pivot};
 
@@ -7,11 +9,14 @@ use crate::compiled::elimination::saddle_point::{Independence, Pivot};
 const ON_BRIDGE: f64 = 1e-2;
 
 /// The rank at the end of the last step, and the motion across the state where it is lost.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Watch {
+    #[serde(skip)]
     pub(super) last: Option<Box<Seen>>,
     /// Storage for the rank at the end of the next step.
+    #[serde(skip)]
     pub(super) next: Independence,
+    #[serde(skip)]
     pub(super) bridge: Option<Box<Collocation>>,
     /// Whether the method needs derivatives of the rates along the motion, which a bridge does not have.
     pub(super) refuses: bool,

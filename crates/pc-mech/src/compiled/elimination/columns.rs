@@ -1,6 +1,7 @@
 //! A matrix of expressions of which only the nonzero entries are computed.
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Pattern, Program};
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::point::Point;
@@ -54,7 +55,7 @@ pub(crate) fn nonzeros<'g>(
 }
 
 /// A compiled matrix of functions of (t, y, p).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Columns {
     pattern: Pattern,
     entries: Evaluator,

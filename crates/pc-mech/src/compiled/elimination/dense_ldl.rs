@@ -9,6 +9,7 @@ use faer::linalg::solvers::FullPivLu;
 use faer::prelude::Solve;
 use faer::{Mat, MatMut, Par};
 use pc_expr::Pattern;
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::elimination::pivots;
 use crate::compiled::failure::EvaluationFailure;
@@ -16,8 +17,9 @@ use crate::compiled::failure::EvaluationFailure;
 /// In complete pivoting, pivots this small relative to the largest are treated as rounding errors.
 const DEPENDENT: f64 = 1e-13;
 
-/// A symmetric k × k matrix and, once it is factorised, L below the diagonal and D on it.
-#[derive(Clone, Debug)]
+/// A symmetric k × k matrix and, once it is factorised, L below the diagonal and D on it. Only k is stored.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(into = "usize", from = "usize")]
 pub(crate) struct DenseLdl {
     matrix: Mat<f64>,
     /// The sizes against which pivots are compared: the diagonal of M unless others are given.
@@ -26,6 +28,18 @@ pub(crate) struct DenseLdl {
     scratch: Vec<MaybeUninit<u8>>,
     /// The factors found with complete pivoting, if elimination without it fails.
     pivoted: Option<Box<FullPivLu<f64>>>,
+}
+
+impl From<usize> for DenseLdl {
+    fn from(k: usize) -> DenseLdl {
+        DenseLdl::new(k)
+    }
+}
+
+impl From<DenseLdl> for usize {
+    fn from(factors: DenseLdl) -> usize {
+        factors.sizes.len()
+    }
 }
 
 impl DenseLdl {

@@ -3,6 +3,7 @@
 
 use pc_algebra::Matrix;
 use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program, SteepFunctions, TimeDependence};
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::elimination::columns::{SparseColumn, Storage, derivative, nonzeros, sparse};
 use crate::compiled::elimination::schur::Schur;
@@ -14,7 +15,7 @@ use crate::compiled::options::CompileOptions;
 use crate::compiled::point::Point;
 
 /// The compiled ẏ = g(t, y, w) and its derivatives, with w from M w = r or p(t, y, w) = r.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Staged {
     dim: usize,
     /// The number of multipliers, which are the last unknowns.
@@ -41,7 +42,7 @@ pub(crate) struct Staged {
 pub(crate) const OF_A_LOOP: usize = 4;
 
 /// The equations that determine w.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 enum Unknowns {
     /// M w = r: a program that computes, from (t, y), the nonzero entries of the lower triangle of M, then r.
     Linear { equations: Evaluator, lower: Pattern, values: Vec<f64> },
@@ -249,7 +250,7 @@ impl Staged {
 }
 
 /// The derivatives ∂ẏ/∂q = ∂g/∂q + ∂g/∂w M⁻¹ ∂F/∂q with F = r − M w or r − p, for symbols q.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Stage {
     /// Computes, from (t, (y, w)), the nonzero entries of ∂F/∂q, of ∂g/∂q, and of ∂g/∂w.
     parts: Evaluator,
@@ -356,7 +357,7 @@ fn whole(blocks: &[usize], balance: &Pattern, rates: &Pattern, coupling: &Patter
 }
 
 /// The product (∂ẏ/∂y) v = g′ + ∂g/∂w w′ with w′ = M⁻¹ F′, where ′ is the derivative along v.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Product {
     /// F′ from (t, (y, w, v)).
     balance: Evaluator,

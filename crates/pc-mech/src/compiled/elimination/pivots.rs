@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Program, Watched};
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::failure::EvaluationFailure;
@@ -51,7 +52,7 @@ fn closely(pivots: &[f64], sizes: &[f64], largest: f64) -> Result<(), Evaluation
 
 /// The layout of the pivots: which pivots, and which of their sizes, change with the state. One list contains
 /// all pivots, followed by as many sizes.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct PivotPartition {
     /// The index of the quasi-velocity of each pivot.
     places: Vec<usize>,
@@ -113,7 +114,7 @@ impl PivotPartition {
 
 /// The pivots of M and the sizes with which they are compared. Pivots and sizes that depend on parameters
 /// alone are computed once for given values of the parameters.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Pivots {
     partition: Arc<PivotPartition>,
     of_parameters: Evaluator,

@@ -15,24 +15,27 @@ use std::sync::{Arc, OnceLock};
 use pc_expr::{
     Backend, Evaluator, Expr, ExprError, Graph, Inputs, LANES, LaneKernel, LaneTape, Lanes, Pattern, Program,
 };
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::elimination::columns::Storage;
 use crate::compiled::failure::EvaluationFailure;
 use crate::compiled::point::Point;
 
 /// The columns of ∂ẏ/∂y, or of another matrix, as products.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Products {
     pattern: Pattern,
     /// The columns of each direction.
     directions: Vec<Vec<usize>>,
     parts: Parts,
+    #[serde(skip)]
     kernels: Arc<OnceLock<Kernels>>,
+    #[serde(skip)]
     frames: [Vec<Lanes>; 2],
 }
 
 /// The program of a product, in three parts.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Parts {
     /// From (t, y, p), the accelerations w.
     unknowns: Arc<Program>,

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use pc_expr::{Backend, Entry, Evaluator, Program};
+use serde::{Deserialize, Serialize};
 
 /// A program divided into two parts: the first depends on parameters alone, such as regrouped masses, and
 /// runs when they change; the second is the rest.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Prologue {
     of_parameters: Evaluator,
     rest: Evaluator,

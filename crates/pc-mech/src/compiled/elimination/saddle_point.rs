@@ -1,6 +1,7 @@
 //! The numerical solution of equations with multipliers, in terms of independent unknowns.
 
 use pc_expr::Pattern;
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::elimination::dense_ldl::DenseLdl;
 use crate::compiled::failure::EvaluationFailure;
@@ -20,7 +21,7 @@ const SPARE: f64 = 1e-2;
 /// the largest remaining coefficient as pivot, so that r unknowns depend on the others, w_D = G w_I + C_D⁻¹ γ,
 /// and (1, Gᵀ) M (1, Gᵀ)ᵀ is factorised. The remaining m − r rows are assumed consistent. The independent
 /// unknowns are chosen anew each time; the solution does not depend on the choice.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Saddle {
     k: usize,
     m: usize,

@@ -9,6 +9,7 @@
 //! used instead.
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Pattern, Program};
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::elimination::columns::{nonzeros, sparse};
 use crate::compiled::elimination::pivots::check;
@@ -19,7 +20,7 @@ use crate::tree::equations::TreeEquations;
 const SMALL_PIVOT: f64 = 1e-4;
 
 /// Solves for η̇ and λ of a tree with loops.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Schur {
     /// Computes, from (t, y): a, γ − C a, the lower triangle of S column by column, Y, then the pivots of M
     /// and its diagonal entries.

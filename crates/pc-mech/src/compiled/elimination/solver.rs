@@ -1,13 +1,14 @@
 //! The numerical solution of the symmetric equations for unknowns and multipliers.
 
 use pc_expr::Pattern;
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::elimination::dense_ldl::DenseLdl;
 use crate::compiled::elimination::saddle_point::{Independence, Saddle};
 use crate::compiled::failure::EvaluationFailure;
 
 /// A symmetric matrix, to be factorised and used for solving.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) enum Solver {
     /// A mass matrix.
     Ldl(DenseLdl),

@@ -8,6 +8,7 @@ use pc_expr::{
     Backend, Cost, Evaluator, Expr, ExprError, LaneField, Pattern, Program, SteepFunctions, TaylorSeries,
     TimeDependence, VariedSeries,
 };
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::elimination::columns::{Columns, Storage, derivative};
 use crate::compiled::elimination::pivots::Pivots;
@@ -20,7 +21,7 @@ use crate::compiled::options::CompileOptions;
 use crate::compiled::point::Point;
 
 /// The compiled ẏ = g(t, y, M⁻¹ r) and its derivatives.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Unrolled {
     /// Outputs: ẏ, which leads, then the pivots and the diagonal entries of M that change with the state.
     rates: Evaluator,
@@ -40,7 +41,9 @@ pub(crate) struct Unrolled {
     observables: Evaluator,
     backend: Backend,
     /// The Taylor series of the outputs of `rates`, made on first use.
+    #[serde(skip)]
     series: Option<TaylorSeries>,
+    #[serde(skip)]
     varied: VariedSeries,
 }
 

@@ -1,6 +1,7 @@
 //! The surface of the states that satisfy constraints, evaluated numerically.
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Inputs, Pattern, Program};
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::elimination::saddle_point::Independence;
 use crate::compiled::elimination::solver::Solver;
@@ -67,7 +68,7 @@ pub(crate) struct Conditions<'a, 'g> {
 ///
 /// A state is moved onto the surface by the shortest path in the kinetic metric: first x by δx = b δπ with δπ
 /// in the span of M⁻¹ ∂f/∂π, then η to the nearest solution.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Surface {
     pub(super) coordinates: usize,
     pub(super) k: usize,
@@ -101,7 +102,7 @@ pub(crate) struct Surface {
 }
 
 /// Storage for a step of Newton's method: its start, its change, and the errors of f there.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Room {
     start: Vec<f64>,
     change: Vec<f64>,
@@ -109,7 +110,7 @@ struct Room {
 }
 
 /// Storage for the rows of the constraints at both ends of a step, and for the products of these rows.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Spans {
     pub(super) before: Vec<f64>,
     pub(super) later: Vec<f64>,

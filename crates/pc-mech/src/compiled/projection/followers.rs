@@ -1,6 +1,7 @@
 //! Conditions that follow from the constraints and are checked during a projection.
 
 use pc_expr::{Backend, Evaluator, Expr, ExprError, Graph, Inputs, Program};
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::failure::EvaluationFailure;
 
@@ -10,7 +11,7 @@ use crate::compiled::failure::EvaluationFailure;
 const OFF: f64 = 1e-6;
 
 /// Functions of the state that vanish where the constraints hold, each representing a constraint.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Followers {
     names: Vec<String>,
     /// Computes each function, followed by its derivatives with respect to the components of the state.

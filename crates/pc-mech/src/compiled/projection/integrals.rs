@@ -2,6 +2,7 @@
 
 use pc_algebra::{discontinuities, may_jump};
 use pc_expr::{Backend, Evaluator, Expr, Program};
+use serde::{Deserialize, Serialize};
 
 use crate::compiled::failure::{EvaluationFailure, check_finite};
 use crate::compiled::first_order::FirstOrder;
@@ -23,7 +24,7 @@ const DEPENDENT: f64 = 1e-10;
 
 /// First integrals I_j(t, y) of a motion, compiled with their gradients, to keep the motion at their values:
 /// see [`Motion::keep`](crate::Motion::keep).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct KeptIntegrals {
     /// The names of the integrals.
     pub(super) names: Vec<String>,
@@ -39,7 +40,7 @@ pub struct KeptIntegrals {
 }
 
 /// Storage for the gradients, for orthogonal directions, for the shortest change, and for a state.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Room {
     entries: Vec<f64>,
     basis: Vec<f64>,

@@ -1,6 +1,7 @@
 //! Unit quaternions among the coordinates.
 
 use pc_expr::Expr;
+use serde::{Deserialize, Serialize};
 
 use crate::system::system::System;
 
@@ -12,7 +13,7 @@ const ROUNDED: f64 = 4.0 * f64::EPSILON;
 ///
 /// The equations of a joint keep |q| constant, but an integrator does so only to its tolerance, and a quaternion whose
 /// |q| is not 1 does not represent a rotation.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct UnitQuaternions {
     places: Vec<[usize; 4]>,
 }
