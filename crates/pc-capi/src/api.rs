@@ -13,6 +13,7 @@ pub(crate) mod bracket;
 pub(crate) mod builder;
 pub(crate) mod cancel;
 pub(crate) mod checkpoint;
+pub(crate) mod code;
 pub(crate) mod dense;
 pub(crate) mod ensemble;
 pub(crate) mod entry;

@@ -7,7 +7,9 @@
 //! equations, and `kinematics`, the Jacobians of bodies; `system` puts all these behind a handle. `engine` is an integration with a record of
 //! its events, `event_set` the events it follows. `draft` is a model built call by call.
 
+pub(crate) mod code;
 pub(crate) mod controller;
+pub(crate) mod derivations;
 pub(crate) mod draft;
 pub(crate) mod engine;
 pub(crate) mod event_set;
@@ -16,5 +18,6 @@ pub(crate) mod kinematics;
 pub(crate) mod lock_free_rhs;
 pub(crate) mod mechanics;
 pub(crate) mod motion_field;
+pub(crate) mod once;
 pub(crate) mod own_rhs;
 pub(crate) mod system;

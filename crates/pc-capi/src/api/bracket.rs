@@ -51,7 +51,7 @@ pub unsafe extern "C" fn pc_system_bracket(
 
 /// The bracket (f, g) as a function of t and (x, η), where η are the quasi-velocities of the state.
 fn derived(inventory: &Inventory, model: &Model, f: &str, g: &str) -> Result<Evaluator, CallError> {
-    if !inventory.variables.are_own() {
+    if !inventory.facts.variables.are_own() {
         let why = "the system is in other coordinates and quasi-velocities than those of the model";
         return Err(CallError::Unsupported { what: "a bracket", why });
     }

@@ -138,7 +138,7 @@ fn unmarked(label: &str) -> (Option<u64>, &str) {
 const HEAD: usize = size_of::<usize>();
 
 /// A copy for C.
-fn handed_out(content: &[u8]) -> *mut c_void {
+pub(crate) fn handed_out(content: &[u8]) -> *mut c_void {
     let whole: Box<[u8]> = [&content.len().to_ne_bytes(), content].concat().into();
     // SAFETY: within the box, or just behind it.
     unsafe { Box::into_raw(whole).cast::<u8>().add(HEAD).cast() }

@@ -13,8 +13,6 @@ use crate::machinery::kinematics::{self, Kinematics};
 use crate::machinery::mechanics::evaluate;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
-const MISSING: CallError = CallError::Unsupported { what: "this function", why: "it was not derived" };
-
 /// Writes A column by column, a_0 and the rates for η̇ = 0.
 fn columns(map: &mut VelocityMap, t: f64, state: &[f64], out: &mut [f64]) -> Result<(), CallError> {
     let (rows, k) = (map.functions(), map.quasi_velocities());
@@ -50,10 +48,8 @@ pub unsafe extern "C" fn pc_system_coriolis(
         let (y, matrix) = unsafe { slices(State { y, length: y_length }, dim, target) }?;
         inner.read_quasi_velocities(inventory, t, y)?;
         let Inner { kinematics: Kinematics { coriolis, .. }, field, room, .. } = inner;
-        if coriolis.is_none() {
-            *coriolis = Some(inventory.derive(|model| kinematics::coriolis(&model, inventory.variables))?);
-        }
-        let coriolis = coriolis.as_mut().ok_or(MISSING)?;
+        let derive = || inventory.derive(|model| kinematics::coriolis(&model, inventory.facts.variables));
+        let coriolis = inventory.derivations.coriolis.own(coriolis, derive)?;
         coriolis.parameters_mut().copy_from_slice(field.inputs(t, y)?);
         Ok(coriolis.eval(t, &room.state, matrix)?)
     };
@@ -84,11 +80,8 @@ pub unsafe extern "C" fn pc_system_centroidal(
         let (y, matrix) = unsafe { slices(State { y, length: y_length }, dim, target) }?;
         inner.read_quasi_velocities(inventory, t, y)?;
         let Inner { kinematics: Kinematics { centroidal, .. }, field, room, .. } = inner;
-        if centroidal.is_none() {
-            *centroidal =
-                Some(inventory.derive(|model| kinematics::centroidal(&model, inventory.variables))?);
-        }
-        let centroidal = centroidal.as_mut().ok_or(MISSING)?;
+        let derive = || inventory.derive(|model| kinematics::centroidal(&model, inventory.facts.variables));
+        let centroidal = inventory.derivations.centroidal.own(centroidal, derive)?;
         centroidal.parameters_mut().copy_from_slice(field.inputs(t, y)?);
         columns(centroidal, t, &room.state, matrix)
     };
@@ -115,10 +108,8 @@ pub unsafe extern "C" fn pc_system_centre_of_mass(
         let (y, centre) = unsafe { slices(State { y, length: y_length }, inventory.dim(), target) }?;
         inner.read_quasi_velocities(inventory, t, y)?;
         let Inner { kinematics: Kinematics { centre: known, .. }, field, room, .. } = inner;
-        if known.is_none() {
-            *known = Some(inventory.derive(|model| kinematics::centre(&model, inventory.variables))?);
-        }
-        let known = known.as_mut().ok_or(MISSING)?;
+        let derive = || inventory.derive(|model| kinematics::centre(&model, inventory.facts.variables));
+        let known = inventory.derivations.centre.own(known, derive)?;
         evaluate(&mut known.position, (t, &room.state, field.parameters()), centre)
     };
     // SAFETY: as the preamble demands.
@@ -145,10 +136,8 @@ pub unsafe extern "C" fn pc_system_centre_of_mass_jacobian(
         let (y, jacobian) = unsafe { slices(State { y, length: y_length }, dim, target) }?;
         inner.read_quasi_velocities(inventory, t, y)?;
         let Inner { kinematics: Kinematics { centre, .. }, field, room, .. } = inner;
-        if centre.is_none() {
-            *centre = Some(inventory.derive(|model| kinematics::centre(&model, inventory.variables))?);
-        }
-        let velocity = &mut centre.as_mut().ok_or(MISSING)?.velocity;
+        let derive = || inventory.derive(|model| kinematics::centre(&model, inventory.facts.variables));
+        let velocity = &mut inventory.derivations.centre.own(centre, derive)?.velocity;
         velocity.parameters_mut().copy_from_slice(field.inputs(t, y)?);
         columns(velocity, t, &room.state, jacobian)
     };
@@ -198,8 +187,9 @@ pub unsafe extern "C" fn pc_system_body_jacobian(
         let place = match bodies.iter().position(|(name, _)| name == body) {
             Some(place) => place,
             None => {
-                let derive = |model| kinematics::body(&model, inventory.variables, body);
-                bodies.push((body.to_owned(), inventory.derive(derive)?));
+                let derive =
+                    || inventory.derive(|model| kinematics::body(&model, inventory.facts.variables, body));
+                bodies.push((body.to_owned(), inventory.derivations.bodies.get(body, derive)?));
                 bodies.len() - 1
             }
         };

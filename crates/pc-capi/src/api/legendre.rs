@@ -9,23 +9,19 @@ use crate::ffi::status::pc_status;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 impl Inner {
-    /// Derives the Legendre transform of the state on first use.
-    pub(crate) fn derive_legendre(&mut self, inventory: &Inventory) -> Result<(), CallError> {
-        if self.legendre.is_none() {
-            let mut transform = inventory.derive(|model| {
-                model.derived(|assembly| Ok(assembly.legendre_transform(inventory.variables)?))
-            })?;
+    /// The Legendre transform of the state, derived on first use.
+    pub(crate) fn legendre(&mut self, inventory: &Inventory) -> Result<&mut LegendreTransform, CallError> {
+        let derive = || {
+            inventory.derive(|model| {
+                model.derived(|assembly| Ok(assembly.legendre_transform(inventory.facts.variables)?))
+            })
+        };
+        let is_new = self.legendre.is_none();
+        let transform = inventory.derivations.legendre.own(&mut self.legendre, derive)?;
+        if is_new {
             transform.parameters_mut().copy_from_slice(self.field.parameters());
-            self.legendre = Some(transform);
         }
-        Ok(())
-    }
-
-    fn legendre(&mut self, inventory: &Inventory) -> Result<&mut LegendreTransform, CallError> {
-        self.derive_legendre(inventory)?;
-        const MISSING: CallError =
-            CallError::Unsupported { what: "the transform", why: "it was not derived" };
-        self.legendre.as_mut().ok_or(MISSING)
+        Ok(transform)
     }
 }
 

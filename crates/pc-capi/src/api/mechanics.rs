@@ -18,12 +18,9 @@ impl Inner {
         &mut self,
         inventory: &Inventory,
     ) -> Result<(&mut Mechanics, &mut MotionField, &mut Room), CallError> {
-        if self.mechanics.is_none() {
-            let derived = inventory.derive(|model| Mechanics::of(&model, inventory.variables))?;
-            self.mechanics = Some(derived);
-        }
-        const MISSING: CallError = CallError::Unsupported { what: "M η̇ = r", why: "it was not derived" };
-        Ok((self.mechanics.as_mut().ok_or(MISSING)?, &mut self.field, &mut self.room))
+        let derive = || inventory.derive(|model| Mechanics::of(&model, inventory.facts.variables));
+        let mechanics = inventory.derivations.mechanics.own(&mut self.mechanics, derive)?;
+        Ok((mechanics, &mut self.field, &mut self.room))
     }
 
     /// Writes the state y, converted to (x, η), to `room.state`.
@@ -33,10 +30,10 @@ impl Inner {
         t: f64,
         y: &[f64],
     ) -> Result<(), CallError> {
-        match inventory.variables {
+        match inventory.facts.variables {
             variables if !variables.has_momenta() => self.room.state.copy_from_slice(y),
             _ => {
-                self.derive_legendre(inventory)?;
+                self.legendre(inventory)?;
                 if let Some(transform) = &mut self.legendre {
                     transform.to_quasi_velocities_in(t, y, &mut self.room.state)?;
                 }
@@ -136,18 +133,14 @@ pub unsafe extern "C" fn pc_system_inverse_dynamics(
         // SAFETY: as the preamble demands.
         let (y, tau) = unsafe { slices(State { y, length: y_length }, dim, target) }?;
         inner.read_quasi_velocities(inventory, t, y)?;
-        if inner.inverse.is_none() {
-            let derive = |model: Model| -> Result<InverseDynamics, CallError> {
-                let graph = model.graph();
-                let assembly = model.assemble(&graph)?;
-                let equations = assembly.equations_in(inventory.variables)?;
-                Ok(assembly.placed(equations.inverse_dynamics_of_motion())?)
-            };
-            inner.inverse = Some(inventory.derive(derive)?);
-        }
+        let derive = |model: Model| -> Result<InverseDynamics, CallError> {
+            let graph = model.graph();
+            let assembly = model.assemble(&graph)?;
+            let equations = assembly.equations_in(inventory.facts.variables)?;
+            Ok(assembly.placed(equations.inverse_dynamics_of_motion())?)
+        };
         let Inner { inverse, field, room, .. } = inner;
-        const MISSING: CallError = CallError::Unsupported { what: "M η̇ + h", why: "it was not derived" };
-        let inverse = inverse.as_mut().ok_or(MISSING)?;
+        let inverse = inventory.derivations.inverse.own(inverse, || inventory.derive(derive))?;
         inverse.parameters_mut().copy_from_slice(field.inputs(t, y)?);
         match accelerations {
             Some(accelerations) => inverse.forces(t, &room.state, accelerations, tau)?,
@@ -283,7 +276,7 @@ pub unsafe extern "C" fn pc_system_residual(
             for (rate, right) in rates.iter_mut().zip(&*residual) {
                 *rate -= right;
             }
-            if inventory.variables.has_momenta() {
+            if inventory.facts.variables.has_momenta() {
                 residual.copy_from_slice(rates);
                 return Ok(());
             }

@@ -41,7 +41,7 @@ pub unsafe extern "C" fn pc_system_start_by_parameter(
                 }
             }
             model.derived(|assembly| {
-                let flow = Flow::new(&model, assembly, inventory.variables)?;
+                let flow = Flow::new(&model, assembly, inventory.facts.variables)?;
                 Ok(flow.start_by_parameter(&model, assembly, parameter)?)
             })
         })?;

@@ -62,7 +62,7 @@ pub(crate) fn page(format: c_int) -> Result<Page, CallError> {
 }
 
 fn printed(inventory: &Inventory, model: &Model, page: Page) -> Result<String, CallError> {
-    let form = Form::from(inventory.variables);
+    let form = Form::from(inventory.facts.variables);
     model.derived(|assembly| Ok(pc_print::page(form, page, &Layout::default(), model.title(), assembly)?))
 }
 
@@ -108,7 +108,7 @@ fn emitted(inventory: &Inventory, model: &Model, name: &str, t_end: f64) -> Resu
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     // Sources are written in quasi-velocities.
-    let variables = match inventory.variables {
+    let variables = match inventory.facts.variables {
         Variables::Momenta => Variables::QuasiVelocities,
         Variables::ReducedMomenta => Variables::Reduced,
         other => other,

@@ -2,10 +2,11 @@
 
 use std::ffi::c_char;
 
-use ::pc_model::{absolute_tolerances, deep};
+use ::pc_model::absolute_tolerances;
 
 use crate::api::model::pc_model;
-use crate::api::options::{pc_system_options, take};
+use crate::api::code::derived;
+use crate::api::options::pc_system_options;
 use crate::ffi::boundary::entry;
 use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
@@ -27,15 +28,7 @@ pub unsafe extern "C" fn pc_system_new(
         // SAFETY: the pointers are as the preamble demands.
         unsafe { clear(system, "system") }?;
         // SAFETY: as the preamble demands.
-        let options = unsafe { take::<pc_system_options>(options, "options") }?;
-        let variables = options.variables()?;
-        // SAFETY: as the preamble demands.
-        let limits = unsafe { options.limits() }?;
-        // SAFETY: as the preamble demands.
-        let contents = unsafe { handle(model, "model") }?.contents.take()?.clone();
-        let mut model = contents.model()?;
-        model.limit(limits);
-        let derived = deep(|| pc_system::new(model, variables, contents.observes_reactions))?;
+        let derived = unsafe { derived(model, options) }?.system()?;
         // SAFETY: as the preamble demands.
         unsafe { write(system, Box::into_raw(Box::new(derived)), "system") }
     };
@@ -173,7 +166,7 @@ pub unsafe extern "C" fn pc_system_start(
         // SAFETY: as the preamble demands.
         unsafe { room(y, y_length, inventory.dim(), "y") }?.copy_from_slice(&inventory.start);
         // SAFETY: as the preamble demands.
-        if t.is_null() { Ok(()) } else { unsafe { write(t, inventory.t_start, "t") } }
+        if t.is_null() { Ok(()) } else { unsafe { write(t, inventory.facts.t_start, "t") } }
     };
     // SAFETY: `error` is null or memory for a pointer.
     unsafe { entry(error, start) }

@@ -59,7 +59,7 @@ pub unsafe extern "C" fn pc_system_verify_at(
         }
         // SAFETY: null or `y_length` numbers, as the preamble demands.
         let y = unsafe { numbers(y, y_length, inventory.dim(), "y") }?;
-        let (variables, parameters) = (inventory.variables, inner.field.parameters());
+        let (variables, parameters) = (inventory.facts.variables, inner.field.parameters());
         let report = inventory.derive(|model| report_at(model, variables, parameters, (t, y)))?;
         // SAFETY: as the preamble demands.
         if text.is_null() { Ok(()) } else { unsafe { write(text, give(&report), "text") } }

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::ffi::CString;
 
 use ::pc_model::import::UrdfError;
-use ::pc_model::{Category, ModelError, NotForced, UnknownIntegral, UnknownParameter, UnknownStart};
+use ::pc_model::{Category, ModelError, NotForced, SealError, UnknownIntegral, UnknownParameter, UnknownStart};
 use pc_expr::{Failure, Spent};
 use pc_mech::MechError;
 use pc_solve::{CheckpointError, EnsembleError, SolveError};
@@ -82,6 +82,8 @@ pub(crate) enum CallError {
     NoModel,
     #[error("there is no {what} called `{name}`; there are {}", if known.is_empty() { "none".to_owned() } else { known.join(", ") })]
     UnknownName { what: &'static str, name: String, known: Vec<String> },
+    #[error("the code cannot be used: {0}")]
+    Code(#[from] SealError),
     #[error("{0}")]
     Ensemble(#[from] EnsembleError),
     #[error(transparent)]
@@ -155,6 +157,7 @@ impl CallError {
             CallError::Solve(SolveError::Integration(_)) => pc_status::PC_INTEGRATION,
             CallError::Stopped => pc_status::PC_STOPPED,
             CallError::Terminal => pc_status::PC_EVENT,
+            CallError::Code(_) => pc_status::PC_INVALID_CODE,
             CallError::Checkpoint(_) | CallError::OtherModel | CallError::NoModel => {
                 pc_status::PC_INVALID_CHECKPOINT
             }

@@ -43,6 +43,8 @@ pub enum pc_status {
     PC_DISAGREEMENT = 14,
     /// The derivation or an integration would exceed its limit of memory or time, or was cancelled.
     PC_LIMIT = 15,
+    /// The bytes are not a code, or those of another layout, or part of them is missing or changed.
+    PC_INVALID_CODE = 16,
     /// Not a status.
     PC_STATUS_LAST = 0x7fff_ffff,
 }
@@ -67,6 +69,7 @@ pub extern "C" fn pc_status_name(status: c_int) -> *const c_char {
         13 => c"PC_INVALID_CHECKPOINT",
         14 => c"PC_DISAGREEMENT",
         15 => c"PC_LIMIT",
+        16 => c"PC_INVALID_CODE",
         _ => c"unknown status",
     };
     name.as_ptr()

@@ -3,11 +3,12 @@
 use ::pc_model::{Assembly, Model, Variables};
 use pc_expr::Evaluator;
 use pc_mech::{Expr, MechError};
+use serde::{Deserialize, Serialize};
 
 use crate::ffi::call_error::CallError;
 
 /// The parts of M η̇ = r and of ẋ = b η + b_0, as functions of t and (x, η).
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub(crate) struct Mechanics {
     /// M, k × k.
     pub(crate) mass: Evaluator,

@@ -5,7 +5,8 @@ use std::sync::{Arc, OnceLock};
 
 use ::pc_model::{Flow, FlowEvents, Model, Parameters, Variables, deep};
 use pc_expr::{Deadline, Event, Events, Pattern, TimeDependence};
-use pc_mech::{InverseDynamics, LegendreTransform, MassFactors, Motion, VectorField};
+use pc_mech::{InverseDynamics, LegendreTransform, MassFactors, MechError, Motion, VectorField};
+use serde::{Deserialize, Serialize};
 
 use crate::ffi::boundary::entry;
 use crate::ffi::call_error::CallError;
@@ -13,6 +14,7 @@ use crate::ffi::error::pc_error;
 use crate::ffi::pointer::handle;
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::{c_string, c_strings, nth};
+use crate::machinery::derivations::Derivations;
 use crate::machinery::exclusive::Exclusive;
 use crate::machinery::kinematics::Kinematics;
 use crate::machinery::lock_free_rhs::Direct;
@@ -25,14 +27,24 @@ pub struct pc_system {
     pub(crate) inner: Exclusive<Inner>,
     /// The machine code of f, which needs a live field but no lock; it is known after the first
     /// evaluation.
-    direct: OnceLock<Option<Direct>>,
+    pub(crate) direct: OnceLock<Option<Direct>>,
     pub(crate) inventory: Arc<Inventory>,
+}
+
+/// What neither the model nor its motion says.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct Facts {
+    pub(crate) variables: Variables,
+    /// The names of the parameters.
+    pub(crate) parameters: Vec<String>,
+    pub(crate) t_start: f64,
 }
 
 /// The part that never changes.
 pub(crate) struct Inventory {
     pub(crate) model: Model,
-    pub(crate) variables: Variables,
+    pub(crate) facts: Facts,
+    pub(crate) derivations: Derivations,
     pub(crate) names: Vec<CString>,
     pub(crate) coordinates: usize,
     pub(crate) states: usize,
@@ -45,13 +57,45 @@ pub(crate) struct Inventory {
     pub(crate) pattern: Option<Pattern>,
     /// The quasi-velocities on which external forces act.
     pub(crate) forces: Vec<CString>,
-    pub(crate) t_start: f64,
     pub(crate) start: Vec<f64>,
     pub(crate) events: Vec<Event>,
     pub(crate) event_names: Vec<CString>,
 }
 
 impl Inventory {
+    pub(crate) fn new(model: Model, facts: Facts, flow: &Flow, derivations: Derivations) -> Inventory {
+        let motion = &flow.motion;
+        let observables = motion.observable_names();
+        let constraints = &model.document().constraints;
+        let names: Vec<String> = constraints.iter().map(|c| format!("λ_{}", c.name.text)).collect();
+        // Reactions follow the outputs of the model, one of which may have the name of a reaction.
+        let places = motion.conserved_len() + model.document().outputs.len()..observables.len();
+        let reactions = places.filter(|&i| model.observes_reactions() && names.contains(&observables[i])).collect();
+        let forces = model.external_forces();
+        let pattern = match forces.as_slice() {
+            [] => motion.sparsity().cloned(),
+            _ => Some(Pattern::full(motion.dim(), motion.dim())),
+        };
+        Inventory {
+            names: c_strings(motion.names()),
+            coordinates: motion.coordinates(),
+            states: motion.states(),
+            parameters: c_strings(&facts.parameters),
+            observables: c_strings(observables),
+            conserved: motion.conserved_len(),
+            constraints: c_strings(motion.constraint_names()),
+            reactions,
+            pattern,
+            forces: c_strings(&forces),
+            start: flow.start.clone(),
+            events: flow.events.events().to_vec(),
+            event_names: flow.events.events().iter().map(|event| c_string(event.name())).collect(),
+            model,
+            facts,
+            derivations,
+        }
+    }
+
     /// Length of the state.
     pub(crate) fn dim(&self) -> usize {
         self.names.len()
@@ -71,7 +115,7 @@ impl Inventory {
 
     /// The time and state from which the model starts.
     pub(crate) fn start(&self) -> (f64, &[f64]) {
-        (self.t_start, &self.start)
+        (self.facts.t_start, &self.start)
     }
 }
 
@@ -84,12 +128,11 @@ pub(crate) struct Inner {
     kept_at: (f64, Vec<f64>),
     /// The events of the model.
     pub(crate) events: FlowEvents,
-    /// Derived on first use.
+    /// Copies of derivations, made on first use.
     pub(crate) mechanics: Option<Mechanics>,
     pub(crate) inverse: Option<InverseDynamics>,
     pub(crate) kinematics: Kinematics,
     pub(crate) legendre: Option<LegendreTransform>,
-    /// The motion with ∂f/∂t, or nothing if f does not contain time.
     by_time: Option<Option<Box<Motion>>>,
     /// The factors of M, once a system with M has been solved.
     pub(crate) factors: Option<MassFactors>,
@@ -119,68 +162,6 @@ impl Room {
 }
 
 impl pc_system {
-    /// `reactions` says whether there are reactions among the outputs.
-    pub(crate) fn new(model: Model, variables: Variables, reactions: bool) -> Result<pc_system, CallError> {
-        let graph = model.graph();
-        let assembly = model.assemble(&graph)?;
-        let flow = Flow::new(&model, &assembly, variables)?;
-        let motion = &flow.motion;
-        let parameters: Vec<_> =
-            assembly.system.parameters().iter().map(|(symbol, _)| symbol.to_string()).collect();
-        let observables = motion.observable_names();
-        let constraints = &model.document().constraints;
-        let names: Vec<String> = constraints.iter().map(|c| format!("λ_{}", c.name.text)).collect();
-        // Reactions follow the outputs of the model, one of which may have the name of a reaction.
-        let places = motion.conserved_len() + model.document().outputs.len()..observables.len();
-        let reactions = places.filter(|&i| reactions && names.contains(&observables[i]));
-        let forces = model.external_forces();
-        let pattern = match forces.as_slice() {
-            [] => motion.sparsity().cloned(),
-            _ => Some(Pattern::full(motion.dim(), motion.dim())),
-        };
-        let inventory = Inventory {
-            variables,
-            names: c_strings(motion.names()),
-            coordinates: motion.coordinates(),
-            states: motion.states(),
-            parameters: c_strings(&parameters),
-            observables: c_strings(observables),
-            conserved: motion.conserved_len(),
-            constraints: c_strings(motion.constraint_names()),
-            reactions: reactions.collect(),
-            pattern,
-            forces: c_strings(&forces),
-            t_start: assembly.t_start,
-            start: flow.start.clone(),
-            events: flow.events.events().to_vec(),
-            event_names: flow.events.events().iter().map(|event| c_string(event.name())).collect(),
-            model,
-        };
-        let field = MotionField::new(flow.motion, forces)?;
-        let kept_at = (assembly.t_start, flow.start);
-        let values = inventory.model.parameter_values().clone();
-        let room = Room { state: vec![0.0; inventory.dim()], values: Vec::new() };
-        let events = flow.events;
-        let inner = Inner {
-            field,
-            values,
-            kept_at,
-            events,
-            mechanics: None,
-            inverse: None,
-            kinematics: Kinematics::default(),
-            legendre: None,
-            by_time: None,
-            factors: None,
-            room,
-        };
-        Ok(pc_system {
-            inventory: Arc::new(inventory),
-            direct: OnceLock::new(),
-            inner: Exclusive::new(inner),
-        })
-    }
-
     /// A copy with the same equations.
     pub(crate) fn copy(&self) -> Result<pc_system, CallError> {
         let mut inner = self.inner.take()?.clone();
@@ -213,6 +194,22 @@ impl pc_system {
 }
 
 impl Inner {
+    pub(crate) fn new(inventory: &Inventory, flow: Flow) -> Result<Inner, MechError> {
+        Ok(Inner {
+            field: MotionField::new(flow.motion, inventory.model.external_forces())?,
+            values: inventory.model.parameter_values().clone(),
+            kept_at: (inventory.facts.t_start, flow.start),
+            events: flow.events,
+            mechanics: None,
+            inverse: None,
+            kinematics: Kinematics::default(),
+            legendre: None,
+            by_time: None,
+            factors: None,
+            room: Room { state: vec![0.0; inventory.dim()], values: Vec::new() },
+        })
+    }
+
     /// Takes `values` as the parameters; the integrals to be kept then take the values for these
     /// parameters.
     fn take_values(&mut self) {
@@ -228,20 +225,17 @@ impl Inner {
     /// The motion with its derivative with respect to time, derived on first use, with the current
     /// parameters; nothing if f does not contain time.
     pub(crate) fn by_time(&mut self, inventory: &Inventory) -> Result<Option<&mut Motion>, CallError> {
-        if self.by_time.is_none() {
-            self.by_time = Some(match self.field.time_dependence() {
-                TimeDependence::Absent => None,
-                TimeDependence::Known(_) | TimeDependence::Unknown => {
-                    Some(inventory.derive(|mut model| {
-                        model.differentiate_by_time(true);
-                        model.derived(|assembly| {
-                            Ok(Box::new(Flow::new(&model, assembly, inventory.variables)?.motion))
-                        })
-                    })?)
-                }
-            });
-        }
-        let mut motion = self.by_time.as_mut().and_then(Option::as_deref_mut);
+        let time_dependence = self.field.time_dependence();
+        let derive = || match time_dependence {
+            TimeDependence::Absent => Ok(None),
+            TimeDependence::Known(_) | TimeDependence::Unknown => inventory.derive(|mut model| {
+                model.differentiate_by_time(true);
+                model.derived(|assembly| {
+                    Ok(Some(Box::new(Flow::new(&model, assembly, inventory.facts.variables)?.motion)))
+                })
+            }),
+        };
+        let mut motion = inventory.derivations.by_time.own(&mut self.by_time, derive)?.as_deref_mut();
         if let Some(motion) = &mut motion {
             motion.parameters_mut().copy_from_slice(self.field.parameters());
         }

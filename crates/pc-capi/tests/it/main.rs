@@ -9,6 +9,7 @@ mod bracket;
 mod builder;
 mod builder_keys;
 mod checkpoint;
+mod code;
 mod ensemble;
 mod events;
 mod force_functions;
