@@ -23,8 +23,8 @@
  * failure a new handle or text is NULL, and arrays for results may hold anything.
  *
  * Ownership. What a function named ..._new, ..._clone, pc_model_parse, pc_model_from_file,
- * pc_model_builtin, pc_solver_restore or pc_solver_run_dense gives, you free with the ..._free of
- * its type; `char *` you free with pc_string_free, bytes with pc_bytes_free; `const char *`
+ * pc_model_builtin, pc_code_load, pc_system_of_code, pc_solver_restore or pc_solver_run_dense
+ * gives, you free with the ..._free of its type; `char *` you free with pc_string_free, bytes with pc_bytes_free; `const char *`
  * belongs to the handle it came from and lives as long, or is static. All ..._free allow NULL.
  * Handles are independent: a model can be freed while its system lives, and a system while its
  * solvers and kernels do.
@@ -38,8 +38,9 @@
  * time: a second one at the same time returns PC_BUSY and does nothing. Only pc_system_rhs may
  * run many times side by side, as it says. (Freeing a handle while another thread uses it is not
  * safe.) Different handles are independent; to evaluate on many threads, give each its own by
- * pc_system_clone, or a pc_kernel, which is the one handle that does not notice a second call.
- * Any number of threads may read names and sizes, and use a pc_cancel, at any time. A `const`
+ * pc_system_of_code or pc_system_clone, or a pc_kernel, which is the one handle that does not
+ * notice a second call. Any number of threads may read names and sizes, and use a pc_cancel, a
+ * pc_code and a pc_dense, at any time. A `const`
  * handle says only that the call does not change what the handle computes.
  *
  * Signal handlers may call pc_cancel_request only. A fault of the library is PC_INTERNAL and does
@@ -151,6 +152,10 @@ typedef enum {
    * The derivation or an integration would exceed its limit of memory or time, or was cancelled.
    */
   PC_LIMIT = 15,
+  /**
+   * The bytes are not a code, or those of another layout, or part of them is missing or changed.
+   */
+  PC_INVALID_CODE = 16,
   /**
    * Not a status.
    */
@@ -307,6 +312,12 @@ typedef enum {
  * pc_cancel_free.
  */
 typedef struct pc_cancel pc_cancel;
+
+/**
+ * The equations of motion of a model, derived and compiled: what all its systems have in common. It never
+ * changes, so any number of threads may use it. Free it with pc_code_free.
+ */
+typedef struct pc_code pc_code;
 
 /**
  * A motion as a function of time. It never changes, so any number of threads may use it. Free it
@@ -1492,6 +1503,46 @@ void pc_system_options_init(pc_system_options *options, size_t size);
  * Sets the options to their defaults. `size` is sizeof(pc_solver_options). NULL is allowed.
  */
 void pc_solver_options_init(pc_solver_options *options, size_t size);
+
+/**
+ * Derives and compiles the equations of a model, as pc_system_new does, for any number of systems
+ * made by pc_system_of_code. `options` may be NULL.
+ */
+pc_status pc_code_new(const pc_model *model,
+                      const pc_system_options *options,
+                      pc_code **code,
+                      pc_error **error);
+
+/**
+ * Frees a code. NULL is allowed. Its systems stay as they are.
+ */
+void pc_code_free(pc_code *code);
+
+/**
+ * Makes a system of a code, with the parameters of the model: the data of one thread. Nothing is
+ * derived. Systems of one code share its equations and their machine code, whichever of them needs
+ * it first, and everything that is derived on first use; threads that use a system each never wait
+ * for one another, except for such a derivation. Any number of threads may make systems of one
+ * code at the same time.
+ */
+pc_status pc_system_of_code(const pc_code *code, pc_system **system, pc_error **error);
+
+/**
+ * Writes a code as bytes, to be freed with pc_bytes_free and read by pc_code_load, possibly in
+ * another run of the program. They contain the text of the model, its equations, and what has been
+ * derived on first use so far (such as mass matrices and Jacobians of bodies), but no machine
+ * code: the bytes are the same on every machine. Tables that the model read from files are among
+ * them.
+ */
+pc_status pc_code_save(const pc_code *code, void **data, size_t *length, pc_error **error);
+
+/**
+ * Reads a code that pc_code_save has written; nothing is derived. Returns PC_INVALID_CODE unless
+ * the bytes are exactly what a library of this layout has written, judged by the hash that they
+ * contain. The hash shows damage, not intent: load no bytes that a stranger may have written.
+ * There are no limits on what is derived from this code later.
+ */
+pc_status pc_code_load(const void *data, size_t length, pc_code **code, pc_error **error);
 
 /**
  * Derives and compiles the equations of a model. `options` may be NULL. This takes from

@@ -15,6 +15,7 @@
 
 #include "pc/cancel.hpp"     // limits and cancellation
 #include "pc/catching.hpp"   // exceptions of the program's functions
+#include "pc/code.hpp"       // derived models that threads share and that are kept
 #include "pc/checkpoint.hpp" // integrations that are resumed
 #include "pc/dense.hpp"      // motions as functions of time
 #include "pc/ensemble.hpp"   // many motions at once

@@ -13,7 +13,7 @@
 
 #include "../pc.h"
 #include "call.hpp"
-#include "cancel.hpp"
+#include "code.hpp"
 #include "force.hpp"
 #include "model.hpp"
 #include "view.hpp"
@@ -42,14 +42,11 @@ class system {
 public:
     explicit system(const model &of, pc_form form = PC_POINCARE, const limits &within = {})
     {
-        pc_system_options options;
-        pc_system_options_init(&options, sizeof options);
-        options.form = form;
-        options.memory_limit = within.memory;
-        options.time_limit = within.time;
-        options.cancel = within.by == nullptr ? nullptr : within.by->get();
+        const pc_system_options options = detail::options(form, within);
         detail::call(pc_system_new, of.get(), &options, handle_.place());
     }
+    /// With the values of the model, for one thread; nothing is derived.
+    explicit system(const code &of) : handle_(detail::make<handle>(pc_system_of_code, of.get())) {}
     /// A copy for another thread. Both call the same force functions.
     system clone() const
     {

@@ -48,7 +48,7 @@ fn within_extern_c(text: &str) -> String {
 }
 
 /// In the order in which a reader needs them.
-const FILES: [&str; 37] = [
+const FILES: [&str; 39] = [
     "api/version.rs",
     "ffi/status.rs",
     "ffi/error.rs",
@@ -63,6 +63,8 @@ const FILES: [&str; 37] = [
     "api/settings.rs",
     "api/cancel.rs",
     "api/options.rs",
+    "machinery/code.rs",
+    "api/code.rs",
     "machinery/system.rs",
     "api/system.rs",
     "api/names.rs",

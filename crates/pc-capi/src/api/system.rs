@@ -4,8 +4,8 @@ use std::ffi::c_char;
 
 use ::pc_model::absolute_tolerances;
 
-use crate::api::model::pc_model;
 use crate::api::code::derived;
+use crate::api::model::pc_model;
 use crate::api::options::pc_system_options;
 use crate::ffi::boundary::entry;
 use crate::ffi::call_error::CallError;

@@ -52,8 +52,8 @@ pub const PREAMBLE: &str = "\
  * failure a new handle or text is NULL, and arrays for results may hold anything.
  *
  * Ownership. What a function named ..._new, ..._clone, pc_model_parse, pc_model_from_file,
- * pc_model_builtin, pc_solver_restore or pc_solver_run_dense gives, you free with the ..._free of
- * its type; `char *` you free with pc_string_free, bytes with pc_bytes_free; `const char *`
+ * pc_model_builtin, pc_code_load, pc_system_of_code, pc_solver_restore or pc_solver_run_dense
+ * gives, you free with the ..._free of its type; `char *` you free with pc_string_free, bytes with pc_bytes_free; `const char *`
  * belongs to the handle it came from and lives as long, or is static. All ..._free allow NULL.
  * Handles are independent: a model can be freed while its system lives, and a system while its
  * solvers and kernels do.
@@ -67,8 +67,9 @@ pub const PREAMBLE: &str = "\
  * time: a second one at the same time returns PC_BUSY and does nothing. Only pc_system_rhs may
  * run many times side by side, as it says. (Freeing a handle while another thread uses it is not
  * safe.) Different handles are independent; to evaluate on many threads, give each its own by
- * pc_system_clone, or a pc_kernel, which is the one handle that does not notice a second call.
- * Any number of threads may read names and sizes, and use a pc_cancel, at any time. A `const`
+ * pc_system_of_code or pc_system_clone, or a pc_kernel, which is the one handle that does not
+ * notice a second call. Any number of threads may read names and sizes, and use a pc_cancel, a
+ * pc_code and a pc_dense, at any time. A `const`
  * handle says only that the call does not change what the handle computes.
  *
  * Signal handlers may call pc_cancel_request only. A fault of the library is PC_INTERNAL and does

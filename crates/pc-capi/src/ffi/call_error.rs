@@ -4,7 +4,9 @@ use std::error::Error;
 use std::ffi::CString;
 
 use ::pc_model::import::UrdfError;
-use ::pc_model::{Category, ModelError, NotForced, SealError, UnknownIntegral, UnknownParameter, UnknownStart};
+use ::pc_model::{
+    Category, ModelError, NotForced, SealError, UnknownIntegral, UnknownParameter, UnknownStart,
+};
 use pc_expr::{Failure, Spent};
 use pc_mech::MechError;
 use pc_solve::{CheckpointError, EnsembleError, SolveError};

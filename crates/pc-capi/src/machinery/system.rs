@@ -70,7 +70,8 @@ impl Inventory {
         let names: Vec<String> = constraints.iter().map(|c| format!("λ_{}", c.name.text)).collect();
         // Reactions follow the outputs of the model, one of which may have the name of a reaction.
         let places = motion.conserved_len() + model.document().outputs.len()..observables.len();
-        let reactions = places.filter(|&i| model.observes_reactions() && names.contains(&observables[i])).collect();
+        let reactions =
+            places.filter(|&i| model.observes_reactions() && names.contains(&observables[i])).collect();
         let forces = model.external_forces();
         let pattern = match forces.as_slice() {
             [] => motion.sparsity().cloned(),

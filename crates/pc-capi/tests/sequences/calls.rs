@@ -33,6 +33,11 @@ pub(crate) enum ModelCall {
 #[derive(Clone, Debug)]
 pub(crate) enum SystemCall {
     New(i8),
+    /// By a code that is saved, changed in one byte or not, and loaded.
+    Code {
+        form: i8,
+        change: u8,
+    },
     Clone,
     Free,
     /// A function of (t, y) that writes numbers.
@@ -141,6 +146,7 @@ fn of_system() -> impl Strategy<Value = SystemCall> {
     let at = || (any::<u8>(), any::<u8>(), numbers(), state());
     prop_oneof![
         4 => (-1i8..3).prop_map(New),
+        1 => (-1i8..3, any::<u8>()).prop_map(|(form, change)| Code { form, change }),
         1 => Just(Clone),
         1 => Just(Free),
         6 => at().prop_map(|(function, room, t, y)| At { function, room, t, y }),

@@ -115,7 +115,38 @@ impl Handles {
                     })
                 }
                 SystemCall::Kernel { y, value } => self.kernel(y, *value),
+                SystemCall::Code { form, change } => self.code(*form, *change),
             }
+        }
+    }
+
+    /// A system of a code that is saved and loaded in between; one byte in four times is changed.
+    fn code(&mut self, form: i8, change: u8) -> Outcome {
+        let options = pc_system_options { form: c_int::from(form), ..Default::default() };
+        let (mut code, mut loaded, mut system) = (ptr::null_mut(), ptr::null_mut(), ptr::null_mut());
+        let (mut data, mut length) = (ptr::null_mut(), 0);
+        let model = self.model;
+        // SAFETY: the model is null or live, codes are ours and freed once, bytes are as many as said.
+        unsafe {
+            let new = self.call(|error| pc_code_new(model, &raw const options, &raw mut code, error));
+            assert_eq!(code.is_null(), new.is_err());
+            let saved = self.call(|error| pc_code_save(code, &raw mut data, &raw mut length, error));
+            assert_eq!(data.is_null(), saved.is_err());
+            pc_code_free(code);
+            let is_changed = change.is_multiple_of(4) && length > 0;
+            if is_changed {
+                *data.cast::<u8>().add(usize::from(change) * 7 % length) ^= 1;
+            }
+            let load = self.call(|error| pc_code_load(data, length, &raw mut loaded, error));
+            assert_eq!(load.is_ok(), saved.is_ok() && !is_changed, "{load:?}");
+            pc_bytes_free(data);
+            let made = self.call(|error| pc_system_of_code(loaded, &raw mut system, error));
+            pc_code_free(loaded);
+            if made.is_ok() {
+                pc_system_free(self.system);
+                self.system = system;
+            }
+            new.and(load).and(made)
         }
     }
 
