@@ -74,5 +74,5 @@ pub use model::given::GivenQuasiVelocity;
 pub use model::model::{GivenInput, Model, UnknownInput, UnknownIntegral, UnknownParameter};
 pub use model::start_values::{UnknownStart, UnknownValue};
 pub use model::tags::{TAGS, Tag};
-pub use sealed::{SealError, open, seal};
+pub use sealed::{SealError, name_of, open, seal};
 pub use variables::Variables;

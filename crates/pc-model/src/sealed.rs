@@ -91,6 +91,15 @@ pub fn open<T: DeserializeOwned>(kind: &'static str, bytes: &[u8]) -> Result<T, 
     postcard::from_bytes(contents).map_err(unreadable)
 }
 
+/// The SHA-256 of contents of this kind in hexadecimal digits, with the layout: a name for what is derived from them.
+///
+/// # Errors
+/// As for [`seal`].
+pub fn name_of<T: Serialize>(kind: &'static str, contents: &T) -> Result<String, SealError> {
+    let sealed = seal(kind, &(LAYOUT, env!("CARGO_PKG_VERSION"), contents))?;
+    Ok(sealed[HASH..CONTENTS].iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
 fn unreadable(error: postcard::Error) -> SealError {
     SealError::Unreadable { reason: error.to_string() }
 }

@@ -1,6 +1,7 @@
 //! The computation of a motion, from a plan to a finished run.
 //!
-//! `integrate` makes a [`Run`](run::Run) from a model and its plan, with equations that may have been `derived` before. `checkpoints`, with
+//! `integrate` makes a [`Run`](run::Run) from a model and its plan, with equations that may have been `derived` before, and
+//! kept in a `cache`. `checkpoints`, with
 //! their `identity` and `checkpoint_error`, continue an interrupted run; `sensitivities` computes derivatives with respect to parameters,
 //! `gradient` differentiates one function of the motion with respect to all parameters, and `estimate` computes the global errors;
 //! `streamed` is a motion whose rows are written as they are computed. `verification` compares a motion with a second derivation, and
@@ -8,6 +9,7 @@
 //! `lost`; `lost_inertia` finds why a mass matrix became singular. `fine` is the motion between its rows, for pictures; `table` and `run`
 //! are the results, which `output` writes, `summary` describes and `recording` prepares for pages and pictures.
 
+pub mod cache;
 pub mod checkpoint_error;
 pub mod checkpoints;
 pub mod derived;

@@ -5,6 +5,7 @@ use pc_report::picture::{Drawing, Picture, Wanted};
 use pc_run::files::apart::keep_apart;
 use pc_run::files::stream::Stream;
 use pc_run::files::target;
+use pc_run::motion::cache::Cache;
 use pc_run::motion::integrate::Besides;
 use pc_run::motion::run::Run;
 use pc_run::motion::summary;
@@ -48,6 +49,7 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
         remarks: true,
         estimate: arguments.estimate,
         checkpoints: arguments.checkpoints.files(),
+        cache: std::env::var_os("PC_CACHE_DIR").filter(|directory| !directory.is_empty()).map(Cache::new),
     };
     // A picture needs all rows.
     let mut stream = file.as_ref().and_then(TableFile::stream).filter(|_| picture.is_none());

@@ -6,6 +6,7 @@ mod bench;
 mod book;
 mod brackets;
 mod browser;
+mod cache;
 mod change_points;
 mod check;
 mod checkpoint;

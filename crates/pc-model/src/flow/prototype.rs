@@ -4,6 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use pc_expr::{Backend, Evaluator, Events, LaneField};
 use pc_mech::VectorField;
+use serde::{Deserialize, Serialize};
 
 use crate::assembly::assembly::Assembly;
 use crate::assembly::start::written_start;
@@ -19,10 +20,11 @@ const ON_CONSTRAINTS: f64 = 1e-9;
 const ROUNDING: f64 = 1e-14;
 
 /// The equations of a model, compiled once for all models that differ from it only in numbers.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct Prototype {
     flow: Mutex<Flow>,
     /// Copies of it that are not in use.
+    #[serde(skip)]
     spare: Mutex<Vec<Flow>>,
     /// The start values as they are written, as functions of the parameters.
     written: Mutex<Evaluator>,

@@ -5,9 +5,10 @@ use std::sync::Arc;
 use pc_mech::Expr;
 use pc_model::{Assembly, Flow, Model, ModelError, Prototype, Variables};
 use pc_report::dropped;
+use serde::{Deserialize, Serialize};
 
 /// The equations of a model in one form, compiled, with remarks on them.
-#[derive(Clone)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Derived {
     /// The equations, with the values of the model.
     pub flow: Flow,
@@ -19,7 +20,7 @@ pub struct Derived {
 }
 
 /// Facts about the equations that are remembered after they are compiled.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Facts {
     /// The constraints that were dropped, each with the reason.
     pub(crate) dropped: Vec<(String, String)>,

@@ -8,6 +8,7 @@ use pc_solve::{self as solver, Events, Options, Solution, Solve, SolveError, Tra
 
 use crate::error::RunError;
 use crate::files::stream::Stream;
+use crate::motion::cache::{Cache, Kept};
 use crate::motion::checkpoints::{CheckpointFiles, Checkpoints};
 use crate::motion::derived::{Derived, Facts};
 use crate::motion::estimate::{self, Estimate};
@@ -42,6 +43,9 @@ pub struct Besides {
     pub estimate: bool,
     /// Checkpoints.
     pub checkpoints: CheckpointFiles,
+    /// Where equations are kept for the next run, if anywhere. What is found there was compared with a second
+    /// derivation before it was kept, and is not compared again.
+    pub cache: Option<Cache>,
 }
 
 impl Besides {
@@ -67,6 +71,19 @@ impl Run {
         stream: Option<&mut Stream<'_>>,
         observer: &dyn Observer,
     ) -> Result<Run, RunError> {
+        let form = Plan::form(model, wishes);
+        // Derivatives with respect to parameters need more than the equations of motion.
+        let cache = besides.cache.as_ref().filter(|_| wishes.sensitivities.is_empty());
+        if let Some(Kept { derived: Derived { flow, facts, .. }, remarks, verified }) =
+            cache.and_then(|cache| cache.find(model, form, observer))
+        {
+            if besides.remarks {
+                remarks.iter().for_each(|remark| observer.remark(remark));
+            }
+            let plan = Plan::of(model, wishes)?;
+            let run = Integration { model, assembly: None, facts, flow, plan, besides, observer }.run(stream)?;
+            return Ok(Run { verified_before: verified, ..run });
+        }
         let graph = model.graph();
         Run::of_assembly(model, &model.assemble(&graph)?, wishes, besides, stream, observer)
     }
@@ -129,13 +146,23 @@ fn integrated(
     stream: Option<&mut Stream<'_>>,
     observer: &dyn Observer,
 ) -> Result<Run, RunError> {
+    let remarks = remarks::of(assembly)?;
     if besides.remarks {
-        remarks::say(assembly, observer)?;
+        remarks.iter().for_each(|remark| observer.remark(remark));
     }
     let flow = Flow::new(model, assembly, form)?;
     let plan = plan()?;
     let facts = Facts::of(assembly);
-    Integration { model, assembly: Some(assembly), facts, flow, plan, besides, observer }.run(stream)
+    let cache = besides.cache.as_ref().filter(|_| besides.verify);
+    let kept = cache
+        .filter(|_| plan.sensitivities.is_empty())
+        .map(|cache| (cache, Derived { flow: flow.clone(), prototype: None, facts: facts.clone() }));
+    let run = Integration { model, assembly: Some(assembly), facts, flow, plan, besides, observer }.run(stream)?;
+    if let (Some((cache, derived)), Some(verification)) = (kept, &run.verification) {
+        let verified = verification.lines();
+        cache.keep(model, form, &Kept { derived, remarks, verified }, observer);
+    }
+    Ok(run)
 }
 
 /// A motion to be integrated.
@@ -248,6 +275,7 @@ impl Integration<'_, '_> {
             slides,
             ending,
             verification: verification.map(|(verification, _)| verification),
+            verified_before: Vec::new(),
             wall: solved.wall,
         })
     }

@@ -1,5 +1,7 @@
 //! Remarks on the equations, for the user.
 
+use std::sync::{Mutex, PoisonError};
+
 use pc_mech::{Constraint, Expr};
 use pc_model::{Assembly, ConstraintFormulation, Variables};
 use pc_report::{NEGATIVE_ENERGY, changing_masses, dropped};
@@ -9,8 +11,25 @@ use pc_print::{energy_remark, short, wrapped};
 use crate::error::RunError;
 use crate::observer::Observer;
 
-/// Tells the observer everything that is known about the equations before they are integrated.
-pub(crate) fn say(assembly: &Assembly<'_>, observer: &dyn Observer) -> Result<(), RunError> {
+/// Takes remarks down.
+#[derive(Default)]
+struct Notes(Mutex<Vec<String>>);
+
+impl Observer for Notes {
+    fn remark(&self, remark: &str) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(remark.to_owned());
+    }
+}
+
+/// Everything that is known about the equations before they are integrated.
+pub(crate) fn of(assembly: &Assembly<'_>) -> Result<Vec<String>, RunError> {
+    let notes = Notes::default();
+    say(assembly, &notes)?;
+    Ok(notes.0.into_inner().unwrap_or_else(PoisonError::into_inner))
+}
+
+/// Tells the observer about it.
+fn say(assembly: &Assembly<'_>, observer: &dyn Observer) -> Result<(), RunError> {
     say_moved(assembly, observer);
     say_negative_energy(assembly, observer);
     say_changing_masses(assembly, observer);

@@ -61,6 +61,8 @@ pub struct Run {
     pub lost_inertia: Option<(String, f64)>,
     /// The result of the comparison with a second derivation, if there was one.
     pub verification: Option<Verification>,
+    /// The result of the comparison in the run that has kept the equations, if they come from there.
+    pub verified_before: Vec<String>,
     /// The work that the integration took.
     pub statistics: Statistics,
     /// The computing time.

@@ -62,6 +62,9 @@ pub fn entries(run: &Run) -> Vec<(&'static str, Vec<String>)> {
     if let Some(verification) = &run.verification {
         line("verified", &verification.lines());
     }
+    if let [first, others @ ..] = run.verified_before.as_slice() {
+        line("kept", &[&[format!("in an earlier run, which was verified: {first}")], others].concat());
+    }
     if let Some(row) = run.table.rows().next_back() {
         let state = run.table.coordinates().start..run.table.states().end;
         let names = run.table.columns().iter().map(String::as_str).zip(row.iter().copied());
