@@ -18,6 +18,8 @@ namespace pc::detail {
 template <class Handle, void (*Free)(Handle *)> class owned {
 public:
     owned() noexcept = default;
+    owned(const owned &) = delete;
+    owned &operator=(const owned &) = delete;
     owned(owned &&other) noexcept : raw_(std::exchange(other.raw_, nullptr)) {}
     owned &operator=(owned &&other) noexcept
     {

@@ -23,7 +23,7 @@ public:
 private:
     using handle = detail::owned<pc_cancel, pc_cancel_free>;
 
-    handle handle_;
+    handle handle_{};
 };
 
 /// Limits of each derivation, and of each call of a solver or an ensemble.

@@ -64,7 +64,7 @@ private:
     }
 
     catching *outer_;
-    std::exception_ptr thrown_;
+    std::exception_ptr thrown_{};
 };
 
 } // namespace pc

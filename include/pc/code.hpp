@@ -63,7 +63,7 @@ private:
 
     explicit code(handle made) noexcept : handle_(std::move(made)) {}
 
-    handle handle_;
+    handle handle_{};
 };
 
 } // namespace pc

@@ -40,7 +40,7 @@ private:
         return values;
     }
 
-    handle handle_;
+    handle handle_{};
 };
 
 } // namespace pc

@@ -50,8 +50,8 @@ public:
     }
 
 private:
-    std::mutex mutex_;
-    std::exception_ptr thrown_;
+    std::mutex mutex_{};
+    std::exception_ptr thrown_{};
 };
 
 /// The argument given to C: the functions, and what keeps their exceptions unless the catching of

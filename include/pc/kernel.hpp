@@ -73,7 +73,7 @@ private:
         return code;
     }
 
-    handle handle_;
+    handle handle_{};
     std::size_t dim_;
 };
 

@@ -411,7 +411,7 @@ private:
         return texts;
     }
 
-    handle handle_;
+    handle handle_{};
 };
 
 } // namespace pc

@@ -12,7 +12,7 @@ namespace pc {
 struct solver_options : pc_solver_options {
     /// One for each component, or none, for `absolute_tolerance` for all. It replaces the pointer
     /// in C.
-    vector absolute_tolerances;
+    vector absolute_tolerances{};
 
     solver_options() noexcept { pc_solver_options_init(this, sizeof(pc_solver_options)); }
 

@@ -195,8 +195,8 @@ private:
     solver(handle made, std::size_t dim) : handle_(std::move(made)), dim_(dim) {}
 
     // It keeps its address when the solver moves, and outlives the handle.
-    std::unique_ptr<event_observer> event_observer_;
-    handle handle_;
+    std::unique_ptr<event_observer> event_observer_{};
+    handle handle_{};
     std::size_t dim_;
 };
 

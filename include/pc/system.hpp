@@ -370,10 +370,10 @@ private:
     {
         return detail::names(get(), name, count);
     }
-    template <class Find> std::size_t place(Find find, const std::string &name) const
+    template <class Find> std::size_t place(Find function, const std::string &name) const
     {
         std::size_t index = 0;
-        detail::call(find, get(), name.c_str(), &index);
+        detail::call(function, get(), name.c_str(), &index);
         return index;
     }
     /// Lets a function write its values at (t, y), with further arguments, to the target.
@@ -390,8 +390,8 @@ private:
         return values;
     }
 
-    handle handle_;
-    std::shared_ptr<const detail::forces> forces_;
+    handle handle_{};
+    std::shared_ptr<const detail::forces> forces_{};
 };
 
 } // namespace pc

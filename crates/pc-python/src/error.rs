@@ -5,7 +5,7 @@ use std::error::Error as _;
 use pc_fmu::FmuError;
 use pc_mech::{Failure, MechError, TableError};
 use pc_model::import::UrdfError;
-use pc_model::{ModelError, UnknownInput, UnknownIntegral, UnknownParameter, UnknownStart};
+use pc_model::{ModelError, SealError, UnknownInput, UnknownIntegral, UnknownParameter, UnknownStart};
 use pc_report::ReportError;
 use pc_run::files::error::FileError;
 use pc_run::linear::error::LinearError;
@@ -35,6 +35,8 @@ pub(crate) enum Error {
     Start(#[from] UnknownStart),
     #[error(transparent)]
     Integral(#[from] UnknownIntegral),
+    #[error(transparent)]
+    Saved(#[from] SealError),
     #[error(transparent)]
     Mech(#[from] MechError),
     #[error(transparent)]

@@ -3,10 +3,11 @@
 use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 
-use pc_model::{Flow, Model, Variables, deep};
+use pc_model::{Flow, Model, Variables, deep, name_of, open, seal};
 use pc_run::motion::derived::Derived;
 use pc_verify::Outlet;
 use pyo3::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use crate::kinematics::Kinematics;
@@ -49,6 +50,26 @@ pub(crate) struct State {
     pub(crate) model: Model,
     pub(crate) derived: Derived,
     version: u64,
+}
+
+/// The kind of contents of a saved system.
+const KIND: &str = "the equations of a system for Python";
+
+/// Equations as they are pickled.
+#[derive(Serialize, Deserialize)]
+struct Saved {
+    /// What they were derived from.
+    name: String,
+    t_start: f64,
+    derived: Derived,
+}
+
+impl Saved {
+    /// The equations of this model, if that is what the bytes contain.
+    fn of(model: &Model, variables: Variables, saved: &[u8]) -> Option<Saved> {
+        let name = name_of(KIND, &(model, variables)).ok()?;
+        open(KIND, saved).ok().filter(|saved: &Saved| saved.name == name)
+    }
 }
 
 impl SystemCore {
@@ -94,14 +115,20 @@ impl SystemCore {
 
 #[pymethods]
 impl SystemCore {
+    /// `saved` is what `_saved_equations` gives for the same model and form; anything else is not used.
     #[new]
-    fn new(py: Python<'_>, model: &ModelCore, form: &str) -> PyResult<SystemCore> {
+    #[pyo3(signature = (model, form, saved=None))]
+    fn new(py: Python<'_>, model: &ModelCore, form: &str, saved: Option<&[u8]>) -> PyResult<SystemCore> {
         let variables = variables(form)?;
         let verify = model.verify;
         let mut model = model.model.clone();
         let cancel = renewed(&mut model);
+        let saved = saved.map(<[u8]>::to_vec);
         let derive = move || {
             deep(|| {
+                if let Some(Saved { derived, t_start, .. }) = saved.and_then(|saved| Saved::of(&model, variables, &saved)) {
+                    return Ok((model, derived, t_start));
+                }
                 let graph = model.graph();
                 let assembly = model.assemble(&graph)?;
                 let derived = Derived::of(&model, &assembly, variables)?;
@@ -136,6 +163,15 @@ impl SystemCore {
             kinematics: Mutex::default(),
             verified: AtomicBool::new(false),
         })
+    }
+
+    /// The equations with the present values, as bytes.
+    #[pyo3(name = "_saved_equations")]
+    fn saved(&self) -> PyResult<Vec<u8>> {
+        let (model, derived) = self.now();
+        let name = name_of(KIND, &(&model, self.variables)).map_err(Error::from)?;
+        let saved = Saved { name, t_start: self.inventory.t_start, derived };
+        Ok(seal(KIND, &saved).map_err(Error::from)?)
     }
 
     /// Names of the components of a state.

@@ -26,6 +26,7 @@ def test_all_can_be_pickled() -> None:
     again = pickle.loads(pickle.dumps(system))
     assert dict(again.parameters) == dict(system.parameters) and (again.y0 == system.y0).all()
     assert (again(0.0, again.y0) == system(0.0, system.y0)).all()
+    assert again._saved_equations() == system._saved_equations()
     motion = system.run(1.0, samples=3)
     system.parameters["mg"] = 1.0
     copy = pickle.loads(pickle.dumps(motion))
@@ -41,6 +42,15 @@ def test_all_can_be_pickled() -> None:
     assert pickle.loads(pickle.dumps(equations)).latex() == equations.latex()
     bracket = pickle.loads(pickle.dumps(model.system().bracket("γ1", "ω2")))
     assert bracket(0.0, model.system().y0) == model.system().bracket("γ1", "ω2")(0.0, model.system().y0)
+
+
+def test_equations_of_something_else_are_derived_again() -> None:
+    top, ball = (chetaev.Model.builtin(name) for name in ("heavy-top-lagrange", "bouncing-ball"))
+    system = top.system()
+    for saved in (b"", b"something else", ball.system()._saved_equations(), top.system("canonical")._saved_equations()):
+        again = chetaev.System(top, _saved=saved)
+        assert again.names == system.names
+        assert (again(0.0, again.y0) == system(0.0, system.y0)).all()
 
 
 def last(system: chetaev.System) -> float:

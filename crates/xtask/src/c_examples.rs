@@ -79,6 +79,7 @@ pub(crate) fn run() -> Result<(), Error> {
     } else {
         println!("skipped: ThreadSanitizer, which does not run here");
     }
+    julia(&machine, &installed.join("lib"))?;
     let archive = format!("{} {}", installed.join("lib/libpc.a").display(), install::STATIC_LIBS);
     let archive = Library { flags: archive, place: place.clone() };
     c_numbers::check(&mut archive.check(("cc", "c++"), "-O2", "static"), &pc)?;
@@ -123,6 +124,7 @@ pub(crate) fn quick() -> Result<(), Error> {
     let library = Library::shared(&libraries, &place);
     c_numbers::check(&mut library.check(compiler, "-O1", "plain"), &pc)?;
     c_numbers::check_source(&place.join("plain"), &pc)?;
+    julia(&machine, &libraries)?;
     // Each warns of something that the others do not.
     for compiler in compilers(&machine) {
         announce_and_run(&mut library.check(compiler, "-O1", compiler.0))?;
@@ -176,9 +178,20 @@ impl Library {
     }
 }
 
+/// The example in Julia, which calls the shared library.
+fn julia(machine: &Machine, libraries: &Path) -> Result<(), Error> {
+    if !machine.has_program("julia") {
+        println!("skipped: julia_top, for there is no `julia`");
+        return Ok(());
+    }
+    let mut julia = Command::new("julia");
+    julia.current_dir(workspace_root().join("examples-c")).env("PC_LIBRARY", libraries.join("libpc.so"));
+    announce_and_run(julia.arg("julia_top.jl"))
+}
+
 /// Of the examples that one alone.
 fn threads_alone(make: &mut Command) -> &mut Command {
-    make.args(["PROGRAMS=threads", "WITH_GSL=", "WITH_SUNDIALS="])
+    make.args(["PROGRAMS=threads", "WITH_FORTRAN=", "WITH_GSL=", "WITH_SUNDIALS="])
 }
 
 /// Whether a program compiled with such flags can be built and run.

@@ -16,7 +16,11 @@ const SPANS: &str = "#include <span>\n#include <pc.hpp>\n\
     static_assert(taken<std::span<const double>, const double> && !taken<std::span<const double>, double>);\n\
     int main() {}\n";
 
-const STRICT: [&str; 5] = ["-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only"];
+const STRICT: [&str; 6] =
+    ["-Wall", "-Wextra", "-pedantic-errors", "-Wconversion", "-Werror", "-fsyntax-only"];
+
+/// What strict programs in C++ demand of headers besides.
+const STRICT_CPP: [&str; 4] = ["-Weffc++", "-Wshadow", "-Wold-style-cast", "-Wnon-virtual-dtor"];
 
 /// Compiles, in both languages, each header alone and twice, and the layout of `abi/interface.txt`.
 ///
@@ -33,6 +37,9 @@ pub(crate) fn headers(
     let compile = |compiler: &str, standard: &str, file: PathBuf, further: &[PathBuf]| {
         let mut command = Command::new(compiler);
         command.args(STRICT).arg(format!("-std={standard}")).arg("-I").arg(include);
+        if standard.starts_with("c++") {
+            command.args(STRICT_CPP);
+        }
         // Not ours to be strict with.
         command.args(further.iter().flat_map(|directory| [Path::new("-isystem"), directory]));
         announce_and_run(command.arg(file))

@@ -38,7 +38,8 @@ class System(_native.System):
 
     ``system(t, y)`` is ẏ, and ``system.jac(t, y)`` its Jacobian, as :func:`scipy.integrate.solve_ivp` takes them. If ``y`` is an array
     of n × N numbers, with a state in each column, so are the results, which are computed without holding the interpreter's lock; ``t``
-    is then a single number, or N numbers. Any number of threads may use a system at once. It can be pickled.
+    is then a single number, or N numbers. Any number of threads may use a system at once. It can be pickled, with its
+    equations: they are not derived again where it is read by the same version of the package.
 
     It is made by :meth:`Model.system`.
 
@@ -59,14 +60,14 @@ class System(_native.System):
     _settings: dict[str, Any]
     _companion: System | None
 
-    def __new__(cls, model: ModelLike, form: str = "poincare", **settings: Any) -> System:
+    def __new__(cls, model: ModelLike, form: str = "poincare", *, _saved: bytes | None = None, **settings: Any) -> System:
         if not hasattr(model, "_changed"):
             raise TypeError(f"a system is made of a Model, by Model.system(), not of {model!r}")
         settings = {**settings}
         for kind in ("parameters", "start"):
             settings[kind] = reals(kind, settings.get(kind) or {})
         settings["inputs"] = dict(settings.get("inputs") or {})
-        self = super().__new__(cls, model._changed("Model.system", settings), form)
+        self = super().__new__(cls, model._changed("Model.system", settings), form, _saved)
         assert isinstance(self, System)
         self._model = model
         self._form = form
@@ -74,8 +75,8 @@ class System(_native.System):
         self._companion = None
         return self
 
-    def __reduce__(self) -> tuple[Callable[..., System], tuple[ModelLike, str, dict[str, Any]]]:
-        return _restored, (self._model, self._form, self.settings())
+    def __reduce__(self) -> tuple[Callable[..., System], tuple[ModelLike, str, dict[str, Any], bytes]]:
+        return _restored, (self._model, self._form, self.settings(), self._saved_equations())
 
     def __repr__(self) -> str:
         return f"<System {self._model.title!r}, {self._form}: {', '.join(self.names)}>"
@@ -661,5 +662,5 @@ class System(_native.System):
         return Page(self._report_page(None if motion is None else motion._recorded()), height=800)
 
 
-def _restored(model: ModelLike, form: str, settings: dict[str, Any]) -> System:
-    return System(model, form, **settings)
+def _restored(model: ModelLike, form: str, settings: dict[str, Any], saved: bytes) -> System:
+    return System(model, form, _saved=saved, **settings)
