@@ -26,6 +26,20 @@ impl Inner {
         Ok((self.mechanics.as_mut().ok_or(MISSING)?, &mut self.field, &mut self.room))
     }
 
+    /// Derives the inverse dynamics on first use.
+    pub(crate) fn derive_inverse(&mut self, inventory: &Inventory) -> Result<(), CallError> {
+        if self.inverse.is_none() {
+            let derive = |model: Model| -> Result<InverseDynamics, CallError> {
+                let graph = model.graph();
+                let assembly = model.assemble(&graph)?;
+                let equations = assembly.equations_in(inventory.variables)?;
+                Ok(assembly.placed(equations.inverse_dynamics_of_motion())?)
+            };
+            self.inverse = Some(inventory.derive(derive)?);
+        }
+        Ok(())
+    }
+
     /// Writes the state y, converted to (x, η), to `room.state`.
     pub(crate) fn read_quasi_velocities(
         &mut self,
@@ -136,15 +150,7 @@ pub unsafe extern "C" fn pc_system_inverse_dynamics(
         // SAFETY: as the preamble demands.
         let (y, tau) = unsafe { slices(State { y, length: y_length }, dim, target) }?;
         inner.read_quasi_velocities(inventory, t, y)?;
-        if inner.inverse.is_none() {
-            let derive = |model: Model| -> Result<InverseDynamics, CallError> {
-                let graph = model.graph();
-                let assembly = model.assemble(&graph)?;
-                let equations = assembly.equations_in(inventory.variables)?;
-                Ok(assembly.placed(equations.inverse_dynamics_of_motion())?)
-            };
-            inner.inverse = Some(inventory.derive(derive)?);
-        }
+        inner.derive_inverse(inventory)?;
         let Inner { inverse, field, room, .. } = inner;
         const MISSING: CallError = CallError::Unsupported { what: "M η̇ + h", why: "it was not derived" };
         let inverse = inverse.as_mut().ok_or(MISSING)?;
