@@ -307,6 +307,95 @@ typedef enum {
 } pc_direction;
 
 /**
+ * What a component of the state has to satisfy; values of pc_solver_options.inequalities.
+ */
+typedef enum {
+  /**
+   * Nothing.
+   */
+  PC_FREE = 0,
+  /**
+   * ≥ 0
+   */
+  PC_NOT_NEGATIVE = 1,
+  /**
+   * ≤ 0
+   */
+  PC_NOT_POSITIVE = -1,
+  /**
+   * > 0
+   */
+  PC_POSITIVE = 2,
+  /**
+   * < 0
+   */
+  PC_NEGATIVE = -2,
+} pc_inequality;
+
+/**
+ * About which state pc_system_linearization linearises.
+ */
+typedef enum {
+  /**
+   * The state that is given; it has to satisfy the constraints.
+   */
+  PC_ABOUT_STATE = 0,
+  /**
+   * The steady motion nearest to it by Newton's method, in which all rates vanish but those of
+   * cyclic coordinates.
+   */
+  PC_ABOUT_STEADY = 1,
+  /**
+   * The equilibrium nearest to it, with all quasi-velocities 0.
+   */
+  PC_ABOUT_REST = 2,
+} pc_about;
+
+/**
+ * The lists of a linearization, and its matrices by their rows and columns.
+ */
+typedef enum {
+  /**
+   * The components x, which are names of components of the state.
+   */
+  PC_LINEAR_COMPONENTS = 0,
+  /**
+   * u: the external forces, then the parameters that were chosen.
+   */
+  PC_LINEAR_INPUTS = 1,
+  /**
+   * h: the outputs of the model that have derivatives at the state.
+   */
+  PC_LINEAR_OUTPUTS = 2,
+} pc_linear_part;
+
+/**
+ * The matrices of a linearization.
+ */
+typedef enum {
+  /**
+   * A, by components and components.
+   */
+  PC_LINEAR_A = 0,
+  /**
+   * B, by components and inputs.
+   */
+  PC_LINEAR_B = 1,
+  /**
+   * C, by outputs and components.
+   */
+  PC_LINEAR_C = 2,
+  /**
+   * D, by outputs and inputs.
+   */
+  PC_LINEAR_D = 3,
+  /**
+   * The eigenvalues of A, two columns: real and imaginary parts, by components.
+   */
+  PC_LINEAR_EIGENVALUES = 4,
+} pc_linear_matrix;
+
+/**
  * A handle that ends the derivations of systems whose pc_system_options contain it, and the
  * integrations of these systems. Any number of threads may use it at the same time. Free it with
  * pc_cancel_free.
@@ -339,6 +428,13 @@ typedef struct pc_error pc_error;
  * safe; in return it takes no locks.
  */
 typedef struct pc_kernel pc_kernel;
+
+/**
+ * The linear equations near a state, δẋ = A δx + B δu, δh = C δx + D δu, in independent components
+ * x of the states that satisfy the constraints. It never changes. Free it with
+ * pc_linearization_free.
+ */
+typedef struct pc_linearization pc_linearization;
 
 /**
  * A model: parameters, frame, energy, forces, constraints, start. Free it with pc_model_free.
@@ -467,6 +563,17 @@ typedef struct {
    * 1; 1e-5 by default.
    */
   double accumulation;
+  /**
+   * A pc_inequality for each component of the state, copied; NULL, the default, for none. They
+   * hold at the ends of steps; a component that can not satisfy its inequality ends the
+   * integration. A start that does not satisfy them is refused, and so are inequalities with
+   * PC_TAYLOR, and for systems whose states are projected.
+   */
+  const int *inequalities;
+  /**
+   * The number of these inequalities; 0 with NULL.
+   */
+  size_t inequalities_length;
 } pc_solver_options;
 
 /**
@@ -508,6 +615,19 @@ typedef void (*pc_destroy)(void *user);
  * exceptions, no longjmp.
  */
 typedef int (*pc_observer)(double t, const double *y, size_t y_length, void *user);
+
+/**
+ * Receives the end (t, y) of each internal step, or of the part of a step before an event, where y
+ * is the state before the event; the order of the method in this step, and the length of the step,
+ * with the sign of the direction. It may lie beyond the time to which the call integrates. Returns
+ * 0 to continue; anything else ends the call with PC_STOPPED. Otherwise it is like pc_observer.
+ */
+typedef int (*pc_monitor)(double t,
+                          const double *y,
+                          size_t y_length,
+                          int order,
+                          double step,
+                          void *user);
 
 /**
  * Receives each event where it occurs, by its number among the events of the solver, with the
@@ -2200,6 +2320,200 @@ pc_status pc_system_body_jacobian(const pc_system *system,
                                   pc_error **error);
 
 /**
+ * Writes the pose of a body at (t, y): the position r of one of its points along fixed axes, 3
+ * numbers, followed by its rotation R, 3 × 3 and column-major, so `length` is 12. R takes
+ * components along the axes of the body to those along fixed axes, so that its columns are the
+ * axes of the body; a particle, and a point of the world, have the unit
+ * matrix. `body` and `point` are as in pc_system_body_jacobian, whose J η + a is the rate of r. The
+ * first call for a name derives the pose, as pc_system_new derives equations, for all points.
+ * Returns PC_NOT_FOUND where there is no such body, and PC_INVALID_MODEL where its angular velocity
+ * is given without a rotation.
+ */
+pc_status pc_system_body_pose(const pc_system *system,
+                              double t,
+                              const double *y,
+                              size_t y_length,
+                              const char *body,
+                              const double *point,
+                              size_t point_length,
+                              double *pose,
+                              size_t length,
+                              pc_error **error);
+
+/**
+ * Writes the acceleration that a point of a body has at (t, y) besides J η̇, and the same part of
+ * the angular acceleration of the body, along fixed axes: 6 numbers, (v̇, ω̇) − J η̇, which is J̇ η
+ * where nothing depends on t. It is the last column of pc_system_body_jacobian, without the
+ * others. With it η̇ = J⁺ (a − bias) gives the point the acceleration a. Otherwise like
+ * pc_system_body_jacobian.
+ */
+pc_status pc_system_body_bias(const pc_system *system,
+                              double t,
+                              const double *y,
+                              size_t y_length,
+                              const char *body,
+                              const double *point,
+                              size_t point_length,
+                              double *bias,
+                              size_t length,
+                              pc_error **error);
+
+/**
+ * Writes the generalised forces g, k numbers with k as in pc_system_mass_matrix, that hold the
+ * system at rest in the position of (t, y): tau of pc_system_inverse_dynamics for η = 0 and
+ * η̇ = 0, whatever the velocities of y are. They balance weight and springs, −X_s L at rest, and
+ * those forces of the model that act at rest; external forces of the program, which are not
+ * called, count as 0. The first call derives equations, as pc_system_new does.
+ */
+pc_status pc_system_gravity(const pc_system *system,
+                            double t,
+                            const double *y,
+                            size_t y_length,
+                            double *tau,
+                            size_t tau_length,
+                            pc_error **error);
+
+/**
+ * Writes the derivatives ∂h/∂y of the observables h of pc_system_observe at (t, y), o × dim and
+ * column-major for o = pc_system_observable_count, so `length` is o*dim. Observables that contain
+ * accelerations or reactions change with these, and external forces with the state, as they do in
+ * pc_system_jacobian. An entry is not finite where its observable has no derivative, as that of a
+ * speed at rest, or no value. The first call derives them, as pc_system_new derives equations.
+ */
+pc_status pc_system_observable_jacobian(const pc_system *system,
+                                        double t,
+                                        const double *y,
+                                        size_t y_length,
+                                        double *jacobian,
+                                        size_t length,
+                                        pc_error **error);
+
+/**
+ * Writes the derivatives ∂h/∂p of the observables at (t, y) by all parameters, o × p and
+ * column-major for p = pc_system_parameter_count, at constant external forces. For an input with a
+ * table it is the derivative by a shift of its values; a parameter that is an expression in others
+ * counts as one by itself. Otherwise like pc_system_observable_jacobian; it needs no
+ * pc_model_differentiate.
+ */
+pc_status pc_system_observable_parameter_jacobian(const pc_system *system,
+                                                  double t,
+                                                  const double *y,
+                                                  size_t y_length,
+                                                  double *jacobian,
+                                                  size_t length,
+                                                  pc_error **error);
+
+/**
+ * Linearises ẏ = f(t, y, u), h = h(t, y, u) at (t, y), which need not be an equilibrium:
+ *
+ *   δẏ = A δy + B δu,   δh = C δy + D δu,
+ *
+ * where u are all external forces, in the order of pc_system_force_name, then the parameters with
+ * the indices `inputs`, such as inputs of the model; h are the observables of pc_system_observe.
+ * In contrast to pc_system_jacobian, A is the derivative at constant u: that of the open loop.
+ *
+ * `forces` are the values of the external forces, so that none needs to be set; NULL, of length 0,
+ * for those of the function of pc_system_set_force. Parameters and inputs have their current
+ * values. The matrices are column-major, for dim = pc_system_dim, o = pc_system_observable_count
+ * and m the number of components of u: `a` is dim × dim, `b` dim × m, `c` o × dim and `d` o × m.
+ * Those that are NULL, of length 0, are left out. Entries of C and D may be not finite, as those of
+ * pc_system_observable_jacobian.
+ *
+ * Where constraints hold, the deviations δy of motions are those that satisfy them to first order;
+ * pc_system_linearization has the equations in independent components. The first call derives
+ * the matrices, as pc_system_new derives equations.
+ */
+pc_status pc_system_linearize(const pc_system *system,
+                              double t,
+                              const double *y,
+                              size_t y_length,
+                              const double *forces,
+                              size_t forces_length,
+                              const size_t *inputs,
+                              size_t inputs_length,
+                              double *a,
+                              size_t a_length,
+                              double *b,
+                              size_t b_length,
+                              double *c,
+                              size_t c_length,
+                              double *d,
+                              size_t d_length,
+                              pc_error **error);
+
+/**
+ * Linearises the equations of a model in independent components about a state near y: the state
+ * itself, the steady motion, or the equilibrium, as `about`, a pc_about, says. Of the components
+ * of the states that satisfy the constraints as many are kept as are independent there; a steady
+ * motion is described without its cyclic coordinates, whose rates are constant.
+ *
+ * Newton's method holds the components with the indices `held` at their values in y, to choose one
+ * of a family of steady motions; it does not leave the states that motions reach from y. External
+ * forces are constant, with the values `forces`; NULL, of length 0, for those that the function
+ * of pc_system_set_force has at (t, y). `inputs` are the indices of parameters that are inputs;
+ * all external forces are. The system has to be in quasi-velocities of the model (PC_POINCARE).
+ * The first call, and one with other inputs, derives equations, as pc_system_new does.
+ *
+ * Returns PC_EVALUATION where no steady state is found, or the rates have no derivatives there, and
+ * PC_UNSUPPORTED where steady states are sought for equations that depend on time, and for other
+ * forms of the equations.
+ */
+pc_status pc_system_linearization(const pc_system *system,
+                                  int about,
+                                  double t,
+                                  const double *y,
+                                  size_t y_length,
+                                  const size_t *held,
+                                  size_t held_length,
+                                  const double *forces,
+                                  size_t forces_length,
+                                  const size_t *inputs,
+                                  size_t inputs_length,
+                                  pc_linearization **linearization,
+                                  pc_error **error);
+
+/**
+ * The number of components, inputs or outputs, according to a pc_linear_part; 0 for NULL.
+ */
+size_t pc_linearization_count(const pc_linearization *linearization, int part);
+
+/**
+ * The name of a component, input or output, counted from 0, according to a pc_linear_part; an
+ * external force has the name of its quasi-velocity. NULL beyond the last.
+ */
+const char *pc_linearization_name(const pc_linearization *linearization, int part, size_t index);
+
+/**
+ * Returns 1 if the state is steady: all rates vanish but those of cyclic coordinates; else 0, and
+ * 0 for NULL.
+ */
+int pc_linearization_is_steady(const pc_linearization *linearization);
+
+/**
+ * Writes the state of the system about which the equations were linearised: the equilibrium or
+ * the steady motion that was found.
+ */
+pc_status pc_linearization_state(const pc_linearization *linearization,
+                                 double *y,
+                                 size_t y_length,
+                                 pc_error **error);
+
+/**
+ * Writes a matrix, a pc_linear_matrix, column-major; pc_linearization_count gives the numbers of its
+ * rows and columns.
+ */
+pc_status pc_linearization_matrix(const pc_linearization *linearization,
+                                  int matrix,
+                                  double *values,
+                                  size_t length,
+                                  pc_error **error);
+
+/**
+ * Frees a linearization. NULL is allowed.
+ */
+void pc_linearization_free(pc_linearization *linearization);
+
+/**
  * Writes the value at (t, y) of the Poisson bracket (12), in coordinates and momenta, of two
  * functions,
  *
@@ -2461,6 +2775,48 @@ pc_status pc_solver_time(const pc_solver *solver, double *t, pc_error **error);
  * Writes the current state of the integration.
  */
 pc_status pc_solver_state(const pc_solver *solver, double *y, size_t y_length, pc_error **error);
+
+/**
+ * Puts a solver at the state y and the time t, as a new solver would be that pc_solver_new makes
+ * with the same options: the method, the statistics, the counts of events and the integrals that
+ * are kept begin anew, and either direction of time may follow. Events that were added, observers,
+ * sensitivities with their starts, and the parameters that the solver has, stay. After a failure
+ * the solver is as it was.
+ */
+pc_status pc_solver_reset(pc_solver *solver,
+                          double t,
+                          const double *y,
+                          size_t y_length,
+                          pc_error **error);
+
+/**
+ * Sets the function that is called after each internal step from now on, in all calls that
+ * integrate, on their thread, in place of the previous one; NULL for none. It follows the work of
+ * the method, shows progress, or stops the integration; it does not change the steps. `destroy`,
+ * unless NULL, is called with `user` exactly once: by this call if it fails or `monitor` is NULL,
+ * else when another monitor takes its place or the solver is freed. `destroy` must not use the
+ * solver while the solver is being freed.
+ */
+pc_status pc_solver_set_monitor(pc_solver *solver,
+                                pc_monitor monitor,
+                                void *user,
+                                pc_destroy destroy,
+                                pc_error **error);
+
+/**
+ * Writes what the error test of the last internal step compared, at its end: the weights
+ * 1/(rtol |y_i| + atol_i) of the components, and the estimated local errors e_i. A step is accepted
+ * if the root mean square of the products is at most 1. Each of the two arrays has the length of
+ * the state; one that is NULL, of length 0, is left out. PC_ADAMS, PC_BDF and the BDF steps of
+ * PC_AUTO have estimates of each component; for other steps the errors are refused with
+ * PC_UNSUPPORTED. Before the first step they are refused with PC_INVALID_ARGUMENT.
+ */
+pc_status pc_solver_errors(const pc_solver *solver,
+                           double *weights,
+                           size_t weights_length,
+                           double *errors,
+                           size_t errors_length,
+                           pc_error **error);
 
 /**
  * Sets the observer that is called for each event from now on, in place of the previous one; NULL
@@ -2726,6 +3082,56 @@ pc_status pc_ensemble_run(const pc_system *system,
                           pc_member_observer observer,
                           void *user,
                           pc_error **error);
+
+/**
+ * Writes the largest Lyapunov exponents of the motion from the state y at the time t, in units of
+ * inverse time and in descending order as far as they have converged; `exponents_length` is their
+ * number, from 1 to the length of the state. As many deviations are integrated with the motion and
+ * are made orthonormal again after each interval of time; the exponents are their mean rates of
+ * growth over `intervals` intervals, after the first `transient` of them, which do not count. The
+ * interval should be so short that its product with the difference of the exponents is below 10.
+ * `options` may be NULL. Events of the model are not followed. Takes as long as an integration over
+ * all intervals; PC_LIMIT as for a solver.
+ */
+pc_status pc_system_lyapunov(const pc_system *system,
+                             const pc_solver_options *options,
+                             double t,
+                             const double *y,
+                             size_t y_length,
+                             double interval,
+                             uint32_t intervals,
+                             uint32_t transient,
+                             double *exponents,
+                             size_t exponents_length,
+                             pc_error **error);
+
+/**
+ * Writes the value of G = h(t_end) + ∫ g dt along the motion from the state y at the time t, and
+ * its derivatives by this state, ∂G/∂y_i with the other components held fixed, and by all
+ * parameters, ∂G/∂p_j for a start that does not depend on them; to what they are for a start that
+ * does, pc_system_start_by_parameter adds Σ ∂y_i/∂p_j ∂G/∂y_i.
+ *
+ * h and g are observables, given by their indices `end` and `density`; SIZE_MAX stands for 0. The
+ * motion is integrated forwards and the adjoint equations backwards, once each however many
+ * parameters there are, by PC_BDF if `options`, which may be NULL, say so, else by PC_ADAMS. The
+ * derivatives are continued across the events of the model. `by_parameters` needs
+ * pc_model_differentiate; it may be NULL, of length 0. The first call derives the derivatives of
+ * observables, as pc_system_new derives equations.
+ */
+pc_status pc_system_gradient(const pc_system *system,
+                             const pc_solver_options *options,
+                             double t,
+                             const double *y,
+                             size_t y_length,
+                             double t_end,
+                             size_t end,
+                             size_t density,
+                             double *value,
+                             double *by_start,
+                             size_t by_start_length,
+                             double *by_parameters,
+                             size_t by_parameters_length,
+                             pc_error **error);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -23,6 +23,7 @@
 #include "pc/event.hpp"      // events and observers
 #include "pc/force.hpp"      // forces that functions of the program compute
 #include "pc/kernel.hpp"     // the right-hand side for your own integrator
+#include "pc/linearization.hpp" // equilibria, and linear equations near them
 #include "pc/model.hpp"      // models from a text, or built call by call
 #include "pc/options.hpp"    // how to integrate
 #include "pc/solver.hpp"     // integration

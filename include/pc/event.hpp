@@ -31,6 +31,18 @@ using event_observer = std::function<bool(const occurrence &event)>;
 /// Receives a state; returning false stops the call.
 using observer = std::function<bool(double t, view<const double> y)>;
 
+/// The end of a step of the method, or of the part of it before an event.
+struct step_end {
+    double t;
+    view<const double> y;
+    /// The order of the method, and the length of the step with the sign of its direction.
+    int order;
+    double length;
+};
+
+/// Receives the end of each step; returning false stops the call.
+using monitor = std::function<bool(const step_end &step)>;
+
 namespace detail {
 
 /// What these functions return to C if they throw.
@@ -71,6 +83,19 @@ inline int tell_state(double t, const double *y, std::size_t dim, void *user) no
 {
     return catching::guard(stop, [&] { return (*static_cast<observer *>(user))(t, {y, dim}) ? 0 : stop; });
 }
+
+/// A monitor, for C.
+struct monitor_user {
+    monitor function;
+
+    static int tell(double t, const double *y, std::size_t dim, int order, double length, void *user) noexcept
+    {
+        return catching::guard(stop, [&] {
+            return static_cast<monitor_user *>(user)->function({t, {y, dim}, order, length}) ? 0 : stop;
+        });
+    }
+    static void destroy(void *user) noexcept { delete static_cast<monitor_user *>(user); }
+};
 
 } // namespace detail
 } // namespace pc

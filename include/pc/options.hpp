@@ -3,6 +3,8 @@
 #ifndef PC_OPTIONS_HPP
 #define PC_OPTIONS_HPP
 
+#include <vector>
+
 #include "../pc.h"
 #include "view.hpp"
 
@@ -13,6 +15,8 @@ struct solver_options : pc_solver_options {
     /// One for each component, or none, for `absolute_tolerance` for all. It replaces the pointer
     /// in C.
     vector absolute_tolerances{};
+    /// A pc_inequality for each component, or none. It replaces the pointer in C.
+    std::vector<int> inequalities{};
 
     solver_options() noexcept { pc_solver_options_init(this, sizeof(pc_solver_options)); }
 
@@ -22,6 +26,8 @@ struct solver_options : pc_solver_options {
         pc_solver_options options = *this;
         options.absolute_tolerances = absolute_tolerances.empty() ? nullptr : absolute_tolerances.data();
         options.absolute_tolerances_length = absolute_tolerances.size();
+        options.inequalities = inequalities.empty() ? nullptr : inequalities.data();
+        options.inequalities_length = inequalities.size();
         return options;
     }
 };

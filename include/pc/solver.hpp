@@ -22,6 +22,39 @@
 
 namespace pc {
 
+/// The value of a function of a motion, and its derivatives by the start and by the parameters.
+struct gradient {
+    double value;
+    vector by_start, by_parameters;
+};
+
+/// The largest Lyapunov exponents of the motion from (t, y), so many of them, over a number of intervals of time after the
+/// first few, `transient`.
+inline vector lyapunov_exponents(const system &of, double t, view<const double> y, std::size_t count, double interval,
+                                 std::uint32_t intervals, std::uint32_t transient = 0,
+                                 const solver_options &options = {})
+{
+    const pc_solver_options chosen = options.get();
+    vector exponents(count);
+    detail::call(pc_system_lyapunov, of.get(), &chosen, t, y.data(), y.size(), interval, intervals, transient,
+                 exponents.data(), exponents.size());
+    return exponents;
+}
+
+/// The gradient of h(t_end) + ∫ g dt along the motion from (t, y) for observables h and g, by their indices, if they are given.
+/// The derivatives by parameters need model::differentiate().
+inline gradient gradient_of(const system &of, double t, view<const double> y, double t_end,
+                            std::optional<std::size_t> end, std::optional<std::size_t> density = std::nullopt,
+                            bool by_parameters = true, const solver_options &options = {})
+{
+    const pc_solver_options chosen = options.get();
+    gradient found{0.0, vector(of.dim()), vector(by_parameters ? of.parameter_count() : 0)};
+    detail::call(pc_system_gradient, of.get(), &chosen, t, y.data(), y.size(), t_end, end.value_or(SIZE_MAX),
+                 density.value_or(SIZE_MAX), &found.value, found.by_start.data(), found.by_start.size(),
+                 by_parameters ? found.by_parameters.data() : nullptr, found.by_parameters.size());
+    return found;
+}
+
 /// An integration, with its current time and state.
 ///
 /// What a function, an observer or a force of the system throws ends the call that called it, and
@@ -68,6 +101,18 @@ public:
         detail::call(pc_solver_observe_events, get(), told, kept.get());
         event_observer_ = std::move(kept);
     }
+
+    /// Calls `follow` after each step of the method from now on; nothing if it is empty.
+    void set_monitor(monitor follow)
+    {
+        using user = detail::monitor_user;
+        const auto told = follow ? &user::tell : nullptr;
+        auto kept = std::make_unique<user>(user{std::move(follow)});
+        detail::call(pc_solver_set_monitor, get(), told, kept.release(), &user::destroy);
+    }
+    /// Begins anew from the state y at the time t, as a new solver would, with the events, observers and sensitivities of
+    /// this one.
+    void reset(double t, view<const double> y) { detail::call(pc_solver_reset, get(), t, y.data(), y.size()); }
 
     /// Continues with the current parameters and inputs of the system.
     void take_parameters(const system &from) { detail::call(pc_solver_take_parameters, get(), from.get()); }
@@ -149,6 +194,20 @@ public:
         pc_statistics work{};
         detail::call(pc_solver_statistics, get(), &work, sizeof work);
         return work;
+    }
+    /// The weights 1/(rtol |y| + atol) of the components in the error test of the last step.
+    vector error_weights() const
+    {
+        vector weights(dim_);
+        detail::call(pc_solver_errors, get(), weights.data(), weights.size(), nullptr, std::size_t(0));
+        return weights;
+    }
+    /// The estimated errors of the components in the last step, where the method has them.
+    vector local_errors() const
+    {
+        vector errors(dim_);
+        detail::call(pc_solver_errors, get(), nullptr, std::size_t(0), errors.data(), errors.size());
+        return errors;
     }
     /// Time and state, for restore().
     bytes checkpoint(const std::string &label = "")

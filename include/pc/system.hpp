@@ -3,6 +3,7 @@
 #ifndef PC_SYSTEM_HPP
 #define PC_SYSTEM_HPP
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -28,6 +29,19 @@ struct told_elsewhere;
 /// the system and its copies.
 struct sparsity {
     view<const std::size_t> column_starts, row_indices;
+};
+
+/// Where a body is: the position of one of its points along fixed axes, and its rotation from its own axes to the fixed
+/// ones, column-major.
+struct pose {
+    std::array<double, 3> position;
+    std::array<double, 9> rotation;
+};
+
+/// The equations near a state, δẏ = A δy + B δu, δh = C δy + D δu, column-major: u are all external forces, then the
+/// parameters that were chosen, h the observables.
+struct linear_equations {
+    vector a, b, c, d;
 };
 
 /// C source: the text of a header, and that of the source file.
@@ -211,6 +225,34 @@ public:
     vector integrals(double t, view<const double> y) { return at(pc_system_integrals, conserved_count(), t, y); }
     void integrals(double t, view<const double> y, view<double> values) { to(values, pc_system_integrals, t, y); }
 
+    /// ∂h/∂y of the observables h.
+    vector observable_jacobian(double t, view<const double> y)
+    {
+        return at(pc_system_observable_jacobian, observable_count() * dim(), t, y);
+    }
+    void observable_jacobian(double t, view<const double> y, view<double> matrix)
+    {
+        to(matrix, pc_system_observable_jacobian, t, y);
+    }
+    /// ∂h/∂p of the observables h by all parameters.
+    vector observable_parameter_jacobian(double t, view<const double> y)
+    {
+        return at(pc_system_observable_parameter_jacobian, observable_count() * parameter_count(), t, y);
+    }
+    /// The equations near (t, y), with the external forces and the parameters with the indices `inputs` as u. The values of the
+    /// forces are given, or those of the function that was set.
+    linear_equations linearize(double t, view<const double> y, view<const double> forces = {},
+                               const std::vector<std::size_t> &inputs = {})
+    {
+        const std::size_t rows = observable_count(), columns = force_count() + inputs.size();
+        linear_equations near{vector(dim() * dim()), vector(dim() * columns), vector(rows * dim()),
+                              vector(rows * columns)};
+        detail::call(pc_system_linearize, get(), t, y.data(), y.size(), forces.data(), forces.size(), inputs.data(),
+                     inputs.size(), near.a.data(), near.a.size(), near.b.data(), near.b.size(), near.c.data(),
+                     near.c.size(), near.d.data(), near.d.size());
+        return near;
+    }
+
     vector reactions(double t, view<const double> y) { return at(pc_system_reactions, reaction_count(), t, y); }
     void reactions(double t, view<const double> y, view<double> values) { to(values, pc_system_reactions, t, y); }
 
@@ -292,6 +334,25 @@ public:
     {
         return at(pc_system_body_jacobian, 6 * (dim() - coordinate_count() - state_count() + 2), t, y, body.c_str(),
                   point.data(), point.size());
+    }
+    /// The pose of a body, and of a point given along its axes, from its origin.
+    pose body_pose(double t, view<const double> y, const std::string &body, const std::array<double, 3> &point = {})
+    {
+        const vector all = at(pc_system_body_pose, 12, t, y, body.c_str(), point.data(), point.size());
+        pose found{};
+        std::copy_n(all.begin(), 3, found.position.begin());
+        std::copy_n(all.begin() + 3, 9, found.rotation.begin());
+        return found;
+    }
+    /// What the accelerations (v̇, ω̇) of a point of a body have besides J η̇: J̇ η where nothing depends on t.
+    vector body_bias(double t, view<const double> y, const std::string &body, const std::array<double, 3> &point = {})
+    {
+        return at(pc_system_body_bias, 6, t, y, body.c_str(), point.data(), point.size());
+    }
+    /// The forces that hold the system at rest where it is, against weight and springs.
+    vector gravity(double t, view<const double> y)
+    {
+        return at(pc_system_gravity, dim() - coordinate_count() - state_count(), t, y);
     }
     /// r of M η̇ = r
     vector right_hand_side(double t, view<const double> y)

@@ -3,9 +3,9 @@
 //! `ffi` checks the numbers and pointers of a call, the crates below compute the results, and
 //! `machinery` holds what outlives a call. Models: `model`, `builder`, `inputs`, `bodies`, `joints`
 //! (with `entry`), `action`, `settings`. Equations: `system`, `names`, `rates`, `mechanics`,
-//! `kinematics`, `kernel`, `legendre`, `bracket`, `source`, `theory`, `verify`. Motions: `options`, `cancel`,
-//! `solver`, `observe`, `events`, `occurrences`, `force`, `dense`, `checkpoint`, `statistics`,
-//! `ensemble`. The library: `version`.
+//! `kinematics`, `poses`, `slopes`, `linearization`, `kernel`, `legendre`, `bracket`, `source`, `theory`, `verify`. Motions: `options`, `cancel`,
+//! `solver`, `monitor`, `observe`, `events`, `occurrences`, `force`, `dense`, `checkpoint`, `statistics`,
+//! `ensemble`, `gradient`. The library: `version`.
 
 pub(crate) mod action;
 pub(crate) mod bodies;
@@ -19,20 +19,25 @@ pub(crate) mod ensemble;
 pub(crate) mod entry;
 pub(crate) mod events;
 pub(crate) mod force;
+pub(crate) mod gradient;
 pub(crate) mod inputs;
 pub(crate) mod joints;
 pub(crate) mod kernel;
 pub(crate) mod kinematics;
 pub(crate) mod legendre;
+pub(crate) mod linearization;
 pub(crate) mod mechanics;
 pub(crate) mod model;
+pub(crate) mod monitor;
 pub(crate) mod names;
 pub(crate) mod observe;
 pub(crate) mod occurrences;
 pub(crate) mod options;
+pub(crate) mod poses;
 pub(crate) mod rates;
 pub(crate) mod sensitivity;
 pub(crate) mod settings;
+pub(crate) mod slopes;
 pub(crate) mod solver;
 pub(crate) mod source;
 pub(crate) mod statistics;

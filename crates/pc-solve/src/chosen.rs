@@ -1,6 +1,6 @@
 //! The method chosen in the options.
 
-use pc_expr::{Method, PolynomialMotion, VectorField};
+use pc_expr::{Events, Method, PolynomialMotion, VectorField};
 
 #[cfg(feature = "cvode")]
 use crate::auto::switch::Auto;
@@ -10,6 +10,7 @@ use crate::dop853::setup::Dop853;
 #[cfg(not(feature = "cvode"))]
 use crate::error::InputError;
 use crate::error::{IntegrationError, SolveError};
+use crate::integration::integration::Integration;
 use crate::integration::integration_method::IntegrationMethod;
 use crate::integration::limits::Limits;
 use crate::integration::since::Since;
@@ -97,6 +98,21 @@ impl<F: VectorField> Chosen<F> {
         Ok(Chosen::of(Engine::Cvode(Box::new(begin(field, start, &options)?)), t0, stop_time))
     }
 
+    /// The estimated local errors of the components in the last step, where the method is one of CVODES; none for another
+    /// method.
+    ///
+    /// # Errors
+    /// [`InputError::NoStep`](crate::InputError::NoStep) before the first step.
+    pub fn local_errors(&mut self) -> Result<Option<&[f64]>, SolveError> {
+        match &mut self.method {
+            #[cfg(feature = "cvode")]
+            Engine::Cvode(cvode) => cvode.local_errors().map(Some),
+            #[cfg(feature = "cvode")]
+            Engine::Auto(auto) => auto.local_errors(),
+            Engine::Dop853(_) | Engine::Taylor(_) => Ok(None),
+        }
+    }
+
     fn of(method: Engine<Since<F>>, t0: f64, stop_time: Option<f64>) -> Self {
         Chosen { method, origin: t0, time: t0, end: t0, stop_time }
     }
@@ -154,6 +170,16 @@ fn dated(error: SolveError, origin: f64) -> SolveError {
             SolveError::Integration(Box::new(IntegrationError { reason, time, state, failure }))
         }
         other => other,
+    }
+}
+
+impl<F: VectorField, E: Events> Integration<Chosen<F>, E> {
+    /// The estimated local errors of the components in the last step, as [`Chosen::local_errors`] gives them.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn local_errors(&mut self) -> Result<Option<&[f64]>, SolveError> {
+        self.stepper_mut().local_errors()
     }
 }
 

@@ -138,7 +138,8 @@ pub(super) struct Evaluated {
 const ASIDE: f64 = 0.05;
 
 impl Linearizer {
-    /// Linearizes equations in independent quasi-velocities; `inputs` names the parameters that are inputs.
+    /// Linearizes equations in independent quasi-velocities; `inputs` names the parameters that are inputs, or symbols of
+    /// [external forces](pc_mech::System::external_forces).
     ///
     /// # Errors
     /// [`AnalysisError::UnknownComponent`] for an input that is not a parameter; otherwise as
@@ -180,7 +181,11 @@ impl Linearizer {
     ) -> Result<Linearizer, AnalysisError> {
         let (system, graph) = (equations.system(), equations.system().graph());
         let conditions = multipliers.map_or(&[][..], Multipliers::velocities);
-        let names: Vec<String> = system.parameters().iter().map(|(symbol, _)| symbol.to_string()).collect();
+        let own = system.parameters().iter().map(|(symbol, _)| symbol);
+        let names: Vec<String> = own
+            .chain(system.external_forces().iter().map(|(_, symbol)| symbol))
+            .map(Expr::to_string)
+            .collect();
         let place = |&input: &&str| match names.iter().position(|name| name == input) {
             Some(place) => Ok((input.to_owned(), place)),
             None => Err(AnalysisError::UnknownComponent { name: input.to_owned(), known: names.clone() }),
@@ -313,10 +318,10 @@ impl Linearizer {
         self.depends_on_time
     }
 
-    /// Gives the parameters other values, in the order of declaration.
+    /// Gives the parameters, and then the external forces, other values, in the order of declaration.
     ///
     /// # Panics
-    /// If there are more values than the equations have parameters.
+    /// If there are more values than the equations have parameters and external forces.
     pub fn set_parameters(&mut self, values: &[f64]) {
         let parameters = &mut self.motion.parameters_mut()[..values.len()];
         if parameters != values {

@@ -23,10 +23,20 @@ pub(crate) fn header() -> String {
     config.enumeration = EnumConfig { prefix_with_name: false, ..EnumConfig::default() };
     config.export.exclude = vec!["PREAMBLE".to_owned()];
     // The enumerations of options are only named in the documentation of their fields.
-    config.export.include =
-        ["pc_form", "pc_method", "pc_iteration", "pc_linear_solver", "pc_format", "pc_direction"]
-            .map(str::to_owned)
-            .to_vec();
+    config.export.include = [
+        "pc_form",
+        "pc_method",
+        "pc_iteration",
+        "pc_linear_solver",
+        "pc_format",
+        "pc_direction",
+        "pc_inequality",
+        "pc_about",
+        "pc_linear_part",
+        "pc_linear_matrix",
+    ]
+    .map(str::to_owned)
+    .to_vec();
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut builder = Builder::new().with_config(config);
     for file in FILES {
@@ -48,7 +58,7 @@ fn within_extern_c(text: &str) -> String {
 }
 
 /// In the order in which a reader needs them.
-const FILES: [&str; 39] = [
+const FILES: [&str; 44] = [
     "api/version.rs",
     "ffi/status.rs",
     "ffi/error.rs",
@@ -75,6 +85,9 @@ const FILES: [&str; 39] = [
     "api/events.rs",
     "api/mechanics.rs",
     "api/kinematics.rs",
+    "api/poses.rs",
+    "api/slopes.rs",
+    "api/linearization.rs",
     "api/bracket.rs",
     "api/legendre.rs",
     "api/source.rs",
@@ -82,10 +95,12 @@ const FILES: [&str; 39] = [
     "api/verify.rs",
     "api/kernel.rs",
     "api/solver.rs",
+    "api/monitor.rs",
     "api/occurrences.rs",
     "api/sensitivity.rs",
     "api/dense.rs",
     "api/checkpoint.rs",
     "api/statistics.rs",
     "api/ensemble.rs",
+    "api/gradient.rs",
 ];

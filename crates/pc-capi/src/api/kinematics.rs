@@ -182,8 +182,24 @@ pub unsafe extern "C" fn pc_system_body_jacobian(
         let target = Target { data: jacobian, length, expected, what: "jacobian" };
         // SAFETY: as the preamble demands.
         let (y, jacobian) = unsafe { slices(State { y, length: y_length }, dim, target) }?;
-        inner.read_quasi_velocities(inventory, t, y)?;
-        let Inner { kinematics: Kinematics { bodies, .. }, field, room, .. } = inner;
+        let (map, state) = inner.of_body(inventory, (t, y), body, point)?;
+        columns(map, t, state, jacobian)
+    };
+    // SAFETY: as the preamble demands.
+    unsafe { inside(system, error, compute) }
+}
+
+impl Inner {
+    /// The velocities of a point of a body, derived on first use, and the state y, converted to (x, η).
+    pub(crate) fn of_body(
+        &mut self,
+        inventory: &Inventory,
+        (t, y): (f64, &[f64]),
+        body: &str,
+        point: &[f64],
+    ) -> Result<(&mut VelocityMap, &[f64]), CallError> {
+        self.read_quasi_velocities(inventory, t, y)?;
+        let Inner { kinematics: Kinematics { bodies, .. }, field, room, .. } = self;
         let place = match bodies.iter().position(|(name, _)| name == body) {
             Some(place) => place,
             None => {
@@ -196,8 +212,6 @@ pub unsafe extern "C" fn pc_system_body_jacobian(
         let map = &mut bodies[place].1;
         map.parameters_mut().copy_from_slice(field.inputs(t, y)?);
         map.arguments_mut().copy_from_slice(point);
-        columns(map, t, &room.state, jacobian)
-    };
-    // SAFETY: as the preamble demands.
-    unsafe { inside(system, error, compute) }
+        Ok((map, &room.state))
+    }
 }

@@ -23,6 +23,21 @@ impl Inner {
         Ok((mechanics, &mut self.field, &mut self.room))
     }
 
+    /// The inverse dynamics, derived on first use, with the field of the motion.
+    pub(crate) fn inverse(
+        &mut self,
+        inventory: &Inventory,
+    ) -> Result<(&mut InverseDynamics, &mut MotionField, &mut Room), CallError> {
+        let derive = |model: Model| -> Result<InverseDynamics, CallError> {
+            let graph = model.graph();
+            let assembly = model.assemble(&graph)?;
+            let equations = assembly.equations_in(inventory.facts.variables)?;
+            Ok(assembly.placed(equations.inverse_dynamics_of_motion())?)
+        };
+        let inverse = inventory.derivations.inverse.own(&mut self.inverse, || inventory.derive(derive))?;
+        Ok((inverse, &mut self.field, &mut self.room))
+    }
+
     /// Writes the state y, converted to (x, η), to `room.state`.
     pub(crate) fn read_quasi_velocities(
         &mut self,
@@ -133,14 +148,7 @@ pub unsafe extern "C" fn pc_system_inverse_dynamics(
         // SAFETY: as the preamble demands.
         let (y, tau) = unsafe { slices(State { y, length: y_length }, dim, target) }?;
         inner.read_quasi_velocities(inventory, t, y)?;
-        let derive = |model: Model| -> Result<InverseDynamics, CallError> {
-            let graph = model.graph();
-            let assembly = model.assemble(&graph)?;
-            let equations = assembly.equations_in(inventory.facts.variables)?;
-            Ok(assembly.placed(equations.inverse_dynamics_of_motion())?)
-        };
-        let Inner { inverse, field, room, .. } = inner;
-        let inverse = inventory.derivations.inverse.own(inverse, || inventory.derive(derive))?;
+        let (inverse, field, room) = inner.inverse(inventory)?;
         inverse.parameters_mut().copy_from_slice(field.inputs(t, y)?);
         match accelerations {
             Some(accelerations) => inverse.forces(t, &room.state, accelerations, tau)?,

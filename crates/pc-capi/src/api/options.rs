@@ -6,11 +6,11 @@ use std::time::Duration;
 use ::pc_model::document::Simulation;
 use ::pc_model::{ORDINARY_TOLERANCE, Variables};
 use pc_expr::Limits;
-use pc_solve::{Accumulation, Deadline, Krylov, LinearSolver, Method, NonlinearSolver, Options};
+use pc_solve::{Accumulation, Deadline, Inequality, Krylov, LinearSolver, Method, NonlinearSolver, Options};
 
 use crate::api::cancel::pc_cancel;
 use crate::ffi::call_error::CallError;
-use crate::ffi::pointer::{aligned, numbers};
+use crate::ffi::pointer::{aligned, integers, numbers};
 
 /// The form of the equations of motion; values of pc_system_options.form.
 #[repr(C)]
@@ -159,6 +159,21 @@ pub enum pc_linear_solver {
     PC_LINEAR_KRYLOV = 3,
 }
 
+/// What a component of the state has to satisfy; values of pc_solver_options.inequalities.
+#[repr(C)]
+pub enum pc_inequality {
+    /// Nothing.
+    PC_FREE = 0,
+    /// ≥ 0
+    PC_NOT_NEGATIVE = 1,
+    /// ≤ 0
+    PC_NOT_POSITIVE = -1,
+    /// > 0
+    PC_POSITIVE = 2,
+    /// < 0
+    PC_NEGATIVE = -2,
+}
+
 /// Options for an integration. Set them up with pc_solver_options_init, then change what you like.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -203,6 +218,13 @@ pub struct pc_solver_options {
     /// accumulate is this fraction of their first interval, at least 0 (never) and less than
     /// 1; 1e-5 by default.
     pub accumulation: f64,
+    /// A pc_inequality for each component of the state, copied; NULL, the default, for none. They
+    /// hold at the ends of steps; a component that can not satisfy its inequality ends the
+    /// integration. A start that does not satisfy them is refused, and so are inequalities with
+    /// PC_TAYLOR, and for systems whose states are projected.
+    pub inequalities: *const c_int,
+    /// The number of these inequalities; 0 with NULL.
+    pub inequalities_length: usize,
 }
 
 impl Default for pc_solver_options {
@@ -225,6 +247,8 @@ impl Default for pc_solver_options {
             samples_per_step: 4,
             reserved: 0,
             accumulation: Accumulation::default().within,
+            inequalities: std::ptr::null(),
+            inequalities_length: 0,
         }
     }
 }
@@ -287,7 +311,7 @@ impl pc_solver_options {
     /// The options of a solver for a state of `dim` components, with the deadline.
     ///
     /// # Safety
-    /// The tolerances are null or have the stated length.
+    /// The tolerances and the inequalities are null or have the stated length.
     pub(crate) unsafe fn options(&self, dim: usize, deadline: Deadline) -> Result<Options, CallError> {
         unreserved("pc_solver_options.reserved", self.reserved.into())?;
         let choice = |what, value: c_int| CallError::Choice { what, value: value.into() };
@@ -339,8 +363,30 @@ impl pc_solver_options {
         if self.stop_time.is_nan() || self.stop_time.is_finite() {
             options = options.stop_time(self.stop_time);
         }
+        // SAFETY: null or as many as stated, as promised.
+        let wanted = unsafe { integers(self.inequalities, self.inequalities_length, "inequalities") }?;
+        if !wanted.is_empty() {
+            let (found, expected) = (wanted.len(), dim);
+            if found != expected {
+                return Err(CallError::Length { what: "inequalities", found, expected });
+            }
+            options = options
+                .inequalities(wanted.iter().map(|&value| inequality(value)).collect::<Result<_, _>>()?);
+        }
         options = options.deadline(deadline);
         let accumulation = Accumulation { within: self.accumulation, ..Accumulation::default() };
         Ok(options.samples_per_step(self.samples_per_step).accumulation(accumulation))
+    }
+}
+
+/// The inequality with this number.
+fn inequality(value: c_int) -> Result<Inequality, CallError> {
+    match value {
+        0 => Ok(Inequality::Free),
+        1 => Ok(Inequality::NotNegative),
+        -1 => Ok(Inequality::NotPositive),
+        2 => Ok(Inequality::Positive),
+        -2 => Ok(Inequality::Negative),
+        value => Err(CallError::Choice { what: "pc_inequality", value: value.into() }),
     }
 }

@@ -7,6 +7,7 @@ use ::pc_model::import::UrdfError;
 use ::pc_model::{
     Category, ModelError, NotForced, SealError, UnknownIntegral, UnknownParameter, UnknownStart,
 };
+use pc_analysis::AnalysisError;
 use pc_expr::{Failure, Spent};
 use pc_mech::MechError;
 use pc_solve::{CheckpointError, EnsembleError, SolveError};
@@ -104,6 +105,8 @@ pub(crate) enum CallError {
     NotForced(#[from] NotForced),
     #[error("{0}")]
     Evaluation(#[from] Failure),
+    #[error("{0}")]
+    Analysis(AnalysisError),
     #[error(transparent)]
     Mechanics(#[from] MechError),
     #[error(transparent)]
@@ -151,6 +154,10 @@ impl CallError {
                 pc_status::PC_NOT_FOUND
             }
             CallError::Read { .. } => pc_status::PC_IO,
+            CallError::Analysis(error) => match error {
+                AnalysisError::DependsOnTime | AnalysisError::LeafUnknown { .. } => pc_status::PC_UNSUPPORTED,
+                _ => pc_status::PC_EVALUATION,
+            },
             CallError::Evaluation(_) | CallError::Mechanics(_) | CallError::NoValue { .. } => {
                 pc_status::PC_EVALUATION
             }

@@ -33,6 +33,23 @@ pub(crate) unsafe fn numbers<'a>(
     Ok(unsafe { slice::from_raw_parts(data, expected) })
 }
 
+/// `len` integers, such as indices.
+///
+/// # Safety
+/// Null, or `len` integers that nobody changes during the call; they are plain integers, for which any bytes are valid.
+pub(crate) unsafe fn integers<'a, T: Copy>(
+    data: *const T,
+    len: usize,
+    what: &'static str,
+) -> Result<&'a [T], CallError> {
+    possible(data, len, what)?;
+    if len == 0 {
+        return Ok(&[]);
+    }
+    // SAFETY: not null, aligned, and as many as promised.
+    Ok(unsafe { slice::from_raw_parts(data, len) })
+}
+
 /// Memory for `expected` numbers at `data`, all set to NaN; according to the caller, there is room
 /// for `found` numbers.
 ///

@@ -5,14 +5,15 @@ use std::ops::ControlFlow;
 
 use pc_expr::{Event, Events};
 use pc_solve::{
-    Checkpoint, Chosen, DenseOutput, Ending, Observed, Occurrence, Options, Sensitivities, SolveError,
-    Statistics, Stepper, VectorField,
+    Checkpoint, Chosen, DenseOutput, Ending, Occurrence, Options, Sensitivities, SolveError, Statistics,
+    Stepper, VectorField,
 };
 
 use crate::ffi::call_error::CallError;
 use crate::ffi::user_data::User;
 use crate::machinery::event_set::{Followed, Own};
 use crate::machinery::motion_field::MotionField;
+use crate::machinery::watch::{Monitor, Watch};
 
 /// The integration, with its events.
 pub(crate) type Engine = Box<pc_solve::Integration<Chosen<MotionField>, Followed>>;
@@ -58,7 +59,8 @@ impl EventLog {
         EventLog { counts: vec![0; events], last: vec![None; events], ..EventLog::default() }
     }
 
-    fn note(&mut self, occurrence: &Occurrence) -> ControlFlow<()> {
+    /// Counts an occurrence and passes it to the observer.
+    pub(crate) fn note(&mut self, occurrence: &Occurrence) -> ControlFlow<()> {
         self.counts[occurrence.event] += 1;
         self.last[occurrence.event] = Some(occurrence.clone());
         let Some(Observer { function, user }) = &self.observer else { return ControlFlow::Continue(()) };
@@ -81,6 +83,7 @@ pub(crate) struct Integration {
     /// The work done before the last restart.
     earlier: Statistics,
     pub(crate) record: EventLog,
+    pub(crate) monitor: Option<Monitor>,
 }
 
 impl Integration {
@@ -93,7 +96,8 @@ impl Integration {
         let sensitivities = Sensitivities::new();
         let engine = engine(field, from, &options, events.clone(), &sensitivities)?;
         let record = EventLog::of(events.events().len());
-        Ok(Integration { engine, events, options, sensitivities, earlier: Statistics::default(), record })
+        let earlier = Statistics::default();
+        Ok(Integration { engine, events, options, sensitivities, earlier, record, monitor: None })
     }
 
     /// Follows one more event; on an error nothing changes.
@@ -135,6 +139,28 @@ impl Integration {
         self.earlier = self.statistics();
         (self.engine, self.events) = (engine, events);
         Ok(())
+    }
+
+    /// Begins anew at another time and state, like a new solver with the same options, events, observers and sensitivities.
+    pub(crate) fn reset(&mut self, t: f64, y: &[f64]) -> Result<(), SolveError> {
+        self.begin(&Checkpoint::start(t, y), self.events.clone())?;
+        self.earlier = Statistics::default();
+        let fresh = EventLog::of(self.record.counts.len());
+        self.record = EventLog { observer: self.record.observer.take(), ..fresh };
+        Ok(())
+    }
+
+    /// The reciprocals of the tolerances of the components at the end of the last step.
+    pub(crate) fn error_weights(&self, weights: &mut [f64]) {
+        let method = self.engine.stepper();
+        for (i, (weight, &y)) in weights.iter_mut().zip(method.end_state()).enumerate() {
+            *weight = 1.0 / method.tolerance(i, y);
+        }
+    }
+
+    /// The estimated errors of the components in the last step; none if the method has no such estimate.
+    pub(crate) fn local_errors(&mut self) -> Result<Option<&[f64]>, SolveError> {
+        self.engine.local_errors()
     }
 
     /// A checkpoint of the motion, from which this integration restarts too.
@@ -184,12 +210,14 @@ impl Integration {
 
     pub(crate) fn advance(&mut self, t: f64) -> Result<Ending, SolveError> {
         self.called();
-        self.engine.advance_to(t, |occurrence| self.record.note(occurrence))
+        let Integration { engine, record, monitor, .. } = self;
+        engine.advance_observed(t, Watch { output: nothing, record, monitor: monitor.as_ref() })
     }
 
     pub(crate) fn step(&mut self, towards: f64) -> Result<Ending, SolveError> {
         self.called();
-        self.engine.step(towards, |occurrence| self.record.note(occurrence))
+        let Integration { engine, record, monitor, .. } = self;
+        engine.step_observed(towards, Watch { output: nothing, record, monitor: monitor.as_ref() })
     }
 
     pub(crate) fn run(
@@ -198,8 +226,8 @@ impl Integration {
         output: impl FnMut(f64, &[f64]) -> ControlFlow<()>,
     ) -> Result<Ending, SolveError> {
         self.called();
-        let occurred = |occurrence: &Occurrence| self.record.note(occurrence);
-        self.engine.run_observed(times, Observed::new(output).occurrences(occurred))
+        let Integration { engine, record, monitor, .. } = self;
+        engine.run_observed(times, Watch { output, record, monitor: monitor.as_ref() })
     }
 
     pub(crate) fn run_dense(&mut self, end: f64) -> Result<(DenseOutput, Ending), SolveError> {
@@ -209,7 +237,9 @@ impl Integration {
             motion.extend([segment]);
             ControlFlow::Continue(())
         };
-        let ending = self.engine.run_dense(end, keep, |occurrence| self.record.note(occurrence))?;
+        let Integration { engine, record, monitor, .. } = self;
+        let watch = Watch { output: nothing, record, monitor: monitor.as_ref() };
+        let ending = engine.run_dense_observed(end, keep, watch)?;
         Ok((motion, ending))
     }
 
@@ -240,4 +270,9 @@ impl Integration {
     pub(crate) fn statistics(&self) -> Statistics {
         self.earlier.followed_by(&self.engine.statistics())
     }
+}
+
+/// Takes an output of which there is none.
+fn nothing(_: f64, _: &[f64]) -> ControlFlow<()> {
+    ControlFlow::Continue(())
 }

@@ -1,6 +1,7 @@
-//! The Coriolis matrix and the Jacobians of bodies and momenta, each derived on first use.
+//! The Coriolis matrix, the poses of bodies, and the Jacobians of bodies and momenta, each derived on first use.
 
 use ::pc_model::{CentreOfMass, Model, Variables};
+use pc_expr::Evaluator;
 use pc_mech::{CoriolisMatrix, VelocityMap};
 
 use crate::ffi::call_error::CallError;
@@ -30,10 +31,21 @@ pub(crate) fn centre(model: &Model, variables: Variables) -> Result<CentreOfMass
     model.derived(|assembly| Ok(model.centre_of_mass(assembly, variables)?))
 }
 
-pub(crate) fn body(model: &Model, variables: Variables, name: &str) -> Result<VelocityMap, CallError> {
+/// The position of a point of a body, and the rotation of this body.
+pub(crate) fn pose(model: &Model, variables: Variables, name: &str) -> Result<Evaluator, CallError> {
+    check_name(model, name)?;
+    model.derived(|assembly| Ok(model.body_pose(assembly, variables, name)?))
+}
+
+fn check_name(model: &Model, name: &str) -> Result<(), CallError> {
     let known = model.body_names();
-    if !known.iter().any(|known| known == name) {
-        return Err(CallError::UnknownName { what: "body or point", name: name.to_owned(), known });
+    match known.iter().any(|known| known == name) {
+        true => Ok(()),
+        false => Err(CallError::UnknownName { what: "body or point", name: name.to_owned(), known }),
     }
+}
+
+pub(crate) fn body(model: &Model, variables: Variables, name: &str) -> Result<VelocityMap, CallError> {
+    check_name(model, name)?;
     model.derived(|assembly| Ok(model.body_map(assembly, variables, name)?))
 }

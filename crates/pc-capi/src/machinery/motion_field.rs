@@ -105,6 +105,13 @@ impl MotionField {
         }
     }
 
+    /// Writes the parameters, with the inputs that have tables at their values at t.
+    pub(crate) fn parameters_at(&self, t: f64, values: &mut [f64]) -> Result<(), Failure> {
+        values.copy_from_slice(self.parameters());
+        self.motion().signals().show(t, values).map_err(Failure::fatal)?;
+        Ok(())
+    }
+
     /// The parameters, to be changed.
     pub(crate) fn parameters_mut(&mut self) -> &mut [f64] {
         match self {
@@ -118,6 +125,14 @@ impl MotionField {
         match self {
             MotionField::Free(motion) => Ok(motion.parameters()),
             MotionField::Forced(forced) => forced.inputs(t, y),
+        }
+    }
+
+    /// The derivatives ∂q/∂y of the forces at (t, y), column by column; none without external forces.
+    pub(crate) fn force_jacobian(&mut self, t: f64, y: &[f64]) -> Result<Option<&[f64]>, Failure> {
+        match self {
+            MotionField::Free(_) => Ok(None),
+            MotionField::Forced(forced) => forced.force_jacobian(t, y).map(Some),
         }
     }
 

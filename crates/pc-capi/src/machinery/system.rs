@@ -4,7 +4,7 @@ use std::ffi::{CString, c_char};
 use std::sync::{Arc, OnceLock};
 
 use ::pc_model::{Flow, FlowEvents, Model, Parameters, Variables, deep};
-use pc_expr::{Deadline, Event, Events, Pattern, TimeDependence};
+use pc_expr::{Deadline, Evaluator, Event, Events, Pattern, TimeDependence};
 use pc_mech::{InverseDynamics, LegendreTransform, MassFactors, MechError, Motion, VectorField};
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +17,7 @@ use crate::ffi::strings::{c_string, c_strings, nth};
 use crate::machinery::derivations::Derivations;
 use crate::machinery::exclusive::Exclusive;
 use crate::machinery::kinematics::Kinematics;
+use crate::machinery::linear::Linear;
 use crate::machinery::lock_free_rhs::Direct;
 use crate::machinery::mechanics::Mechanics;
 use crate::machinery::motion_field::MotionField;
@@ -135,6 +136,12 @@ pub(crate) struct Inner {
     pub(crate) kinematics: Kinematics,
     pub(crate) legendre: Option<LegendreTransform>,
     by_time: Option<Option<Box<Motion>>>,
+    /// By the names of bodies and points.
+    pub(crate) poses: Vec<(String, Evaluator)>,
+    /// The motion with all its first derivatives.
+    pub(crate) slopes: Option<Box<Motion>>,
+    /// For the inputs that were asked for last.
+    pub(crate) linear: Option<Box<Linear>>,
     /// The factors of M, once a system with M has been solved.
     pub(crate) factors: Option<MassFactors>,
     pub(crate) room: Room,
@@ -206,6 +213,9 @@ impl Inner {
             kinematics: Kinematics::default(),
             legendre: None,
             by_time: None,
+            poses: Vec::new(),
+            slopes: None,
+            linear: None,
             factors: None,
             room: Room { state: vec![0.0; inventory.dim()], values: Vec::new() },
         })

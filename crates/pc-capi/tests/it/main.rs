@@ -17,6 +17,7 @@ mod forces;
 mod forms;
 #[path = "../../examples/header/generate.rs"]
 mod generate;
+mod gradient;
 mod header;
 mod hold_start;
 #[path = "../../examples/header/interface.rs"]
@@ -24,13 +25,17 @@ mod interface;
 mod kinematics;
 mod laws;
 mod limits;
+mod linearization;
 mod misuse;
+mod monitor;
 mod numbers;
 mod own_events;
 mod owned_observer;
 mod parts;
+mod poses;
 mod refused;
 mod sensitivities;
+mod slopes;
 mod stacks;
 mod states_and_inputs;
 mod theory;

@@ -137,6 +137,20 @@ pub(crate) extern "C" fn observe_event(
     c_int::from(!user.is_null() && event == 1)
 }
 
+pub(crate) extern "C" fn follow(
+    t: f64,
+    y: *const f64,
+    y_length: usize,
+    order: c_int,
+    step: f64,
+    user: *mut c_void,
+) -> c_int {
+    assert!(t.is_finite() && !y.is_null() && y_length > 0 && order >= 0 && step.is_finite());
+    // SAFETY: made by `Own::boxed`.
+    let own = unsafe { &*user.cast::<Own>() };
+    if own.succeeds() { 0 } else { own.code }
+}
+
 pub(crate) extern "C" fn observe_member(member: *const pc_member, user: *mut c_void) -> c_int {
     // SAFETY: as documented.
     let member = unsafe { &*member };

@@ -6,7 +6,7 @@ use std::slice;
 
 use pc::*;
 
-use crate::callbacks::{Own, Watch, destroy, observe, observe_event, reset, value};
+use crate::callbacks::{Own, Watch, destroy, follow, observe, observe_event, reset, value};
 use crate::calls::SolverCall;
 use crate::common::c;
 use crate::handles::{Array, Handles, Outcome, flag, free_text};
@@ -54,6 +54,9 @@ impl Handles {
                 SolverCall::Step(towards, length) => {
                     let (mut t, mut y) = (0.0, self.state(*length));
                     let (data, len) = (y.data(), y.len());
+                    if length % 16 == 7 {
+                        return self.call(|error| pc_solver_reset(solver, *towards, data, len, error));
+                    }
                     self.call(|error| pc_solver_step(solver, *towards, &raw mut t, data, len, error))
                 }
                 SolverCall::AddEvent { direction, function, good } => {
@@ -81,6 +84,13 @@ impl Handles {
                     })
                 }
                 SolverCall::Observe(which) => {
+                    if which % 7 == 6 {
+                        let monitor: pc_monitor = if which % 2 == 0 { None } else { Some(follow) };
+                        let user = Own::boxed(2, c_int::from(which % 5 == 0));
+                        return self.call(|error| {
+                            pc_solver_set_monitor(solver, monitor, user, Some(destroy), error)
+                        });
+                    }
                     let observer: pc_event_observer = if which % 3 == 0 { None } else { Some(observe_event) };
                     if which % 5 == 0 {
                         let user = Own::boxed(2, 0);
@@ -108,7 +118,9 @@ impl Handles {
                 SolverCall::Read(which) => {
                     let (mut t, mut y, mut work) = (0.0, self.state(which / 4), pc_statistics::default());
                     let (data, len) = (y.data(), y.len());
-                    self.call(|error| match which % 4 {
+                    let mut weights = self.state(which / 2);
+                    self.call(|error| match which % 5 {
+                        4 => pc_solver_errors(solver, weights.data(), weights.len(), data, len, error),
                         3 => pc_solver_sensitivity(solver, usize::from(*which) / 64, data, len, error),
                         0 => pc_solver_time(solver, &raw mut t, error),
                         1 => pc_solver_state(solver, data, len, error),
@@ -183,6 +195,9 @@ impl Handles {
     }
 }
 
+/// One of them is not known.
+static INEQUALITIES: [c_int; 8] = [0, 1, 0, 2, 0, -1, -2, 3];
+
 /// Options, one of which may be changed to a right or wrong value. The tolerances live as long as
 /// `y`.
 fn options(method: i8, change: u8, y: &[f64]) -> pc_solver_options {
@@ -201,6 +216,10 @@ fn options(method: i8, change: u8, y: &[f64]) -> pc_solver_options {
         9 => options.max_step = number,
         10 => options.stop_time = number,
         11 => options.max_steps = u64::from(change / 32),
+        12 => {
+            let of = &INEQUALITIES[..y.len().min(INEQUALITIES.len())];
+            (options.inequalities, options.inequalities_length) = (of.as_ptr(), of.len());
+        }
         _ => {}
     }
     options

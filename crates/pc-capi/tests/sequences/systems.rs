@@ -163,7 +163,8 @@ impl Handles {
             let _ = self.call(|error| {
                 pc_system_jacobian_pattern(system, &raw mut entries, ptr::null_mut(), ptr::null_mut(), error)
             });
-            let functions: [(At, usize); 19] = [
+            let observables = pc_system_observable_count(system.as_ref());
+            let functions: [(At, usize); 22] = [
                 (pc_system_time_derivative, dim),
                 (pc_system_parameter_jacobian, dim * pc_system_parameter_count(system.as_ref())),
                 (pc_system_right_hand_side, velocities),
@@ -182,6 +183,12 @@ impl Handles {
                 (pc_system_centre_of_mass, 3),
                 (pc_system_centre_of_mass_jacobian, 3 * (velocities + 2)),
                 (pc_system_to_momenta, dim),
+                (pc_system_gravity, velocities),
+                (pc_system_observable_jacobian, observables * dim),
+                (
+                    pc_system_observable_parameter_jacobian,
+                    observables * pc_system_parameter_count(system.as_ref()),
+                ),
                 (pc_system_to_quasi_velocities, dim),
             ];
             let (function, length) = functions[usize::from(function) % functions.len()];
@@ -206,7 +213,10 @@ impl Handles {
                 dim - pc_system_coordinate_count(system.as_ref()) - pc_system_state_count(system.as_ref());
             let [of_v, of_w] = [v_length, length].map(|length| length.min(velocities));
             let [mut columns, mut point] = [Array::of(room, 6 * (velocities + 2)), Array::of(room / 2, 3)];
-            self.call(|error| match function % 14 {
+            let [mut pose, mut bias] = [Array::of(room, 12), Array::of(room, 6)];
+            let forces = pc_system_force_count(system.as_ref());
+            let [mut square, mut b] = [Array::of(room, dim * dim), Array::of(room, dim * (forces + 1))];
+            self.call(|error| match function % 20 {
                 0 => pc_system_project(system, t, y, y_length, error),
                 1 => pc_system_keep_from(system, t, y, y_length, error),
                 2 => pc_system_event_reset(system, index, t, y, y_length, error),
@@ -223,6 +233,123 @@ impl Handles {
                     let (body, wide, columns) = (BODY.as_ptr(), columns.len(), columns.data());
                     let (point, count) = (point.data(), point.len());
                     pc_system_body_jacobian(system, t, y, y_length, body, point, count, columns, wide, error)
+                }
+                13 => pc_system_body_pose(
+                    system,
+                    t,
+                    y,
+                    y_length,
+                    BODY.as_ptr(),
+                    point.data(),
+                    point.len(),
+                    pose.data(),
+                    pose.len(),
+                    error,
+                ),
+                14 => pc_system_body_bias(
+                    system,
+                    t,
+                    y,
+                    y_length,
+                    BODY.as_ptr(),
+                    point.data(),
+                    point.len(),
+                    bias.data(),
+                    bias.len(),
+                    error,
+                ),
+                15 => pc_system_linearize(
+                    system,
+                    t,
+                    y,
+                    y_length,
+                    ptr::null(),
+                    0,
+                    &raw const index,
+                    1,
+                    square.data(),
+                    square.len(),
+                    b.data(),
+                    b.len(),
+                    ptr::null_mut(),
+                    0,
+                    ptr::null_mut(),
+                    0,
+                    error,
+                ),
+                16 => {
+                    let few = pc_solver_options { max_steps: 200, ..Default::default() };
+                    let exponents = if length > dim { length } else { length.min(2) };
+                    pc_system_lyapunov(
+                        system,
+                        &raw const few,
+                        t,
+                        y,
+                        y_length,
+                        0.05,
+                        1 + room as u32 % 3,
+                        0,
+                        out,
+                        exponents,
+                        error,
+                    )
+                }
+                17 => {
+                    let few = pc_solver_options { max_steps: 200, ..Default::default() };
+                    let end = if index % 2 == 0 { 0 } else { usize::MAX };
+                    pc_system_gradient(
+                        system,
+                        &raw const few,
+                        t,
+                        y,
+                        y_length,
+                        t + 0.1,
+                        end,
+                        index,
+                        &raw mut number,
+                        out,
+                        length,
+                        ptr::null_mut(),
+                        0,
+                        error,
+                    )
+                }
+                18 => {
+                    let mut found = ptr::null_mut();
+                    let about = c_int::from(room % 4) - i32::from(room == 0);
+                    let status = pc_system_linearization(
+                        system,
+                        about,
+                        t,
+                        y,
+                        y_length,
+                        &raw const index,
+                        usize::from(room % 8 == 5),
+                        ptr::null(),
+                        0,
+                        &raw const index,
+                        usize::from(room % 8 == 6),
+                        &raw mut found,
+                        error,
+                    );
+                    assert_eq!(found.is_null(), !matches!(status, pc_status::PC_OK));
+                    let known = found.as_ref();
+                    for part in -1..4 {
+                        let count = pc_linearization_count(known, part);
+                        assert!(pc_linearization_name(known, part, count).is_null());
+                        assert!(count == 0 || !pc_linearization_name(known, part, count - 1).is_null());
+                    }
+                    assert!((0..2).contains(&pc_linearization_is_steady(known)));
+                    let none = ptr::null_mut();
+                    let states = [
+                        pc_linearization_state(found, out, length, none),
+                        pc_linearization_matrix(found, index as c_int, out, length, none),
+                    ];
+                    assert!(
+                        !found.is_null() || states.iter().all(|status| !matches!(status, pc_status::PC_OK))
+                    );
+                    pc_linearization_free(found);
+                    status
                 }
                 9 => pc_system_solve_mass_matrix(system, t, y, y_length, v, of_v, out, of_w, error),
                 _ => pc_system_residual(system, t, y, y_length, v, v_length, out, length, error),

@@ -206,6 +206,12 @@ impl<'g> FirstOrder<'g> {
         pushed
     }
 
+    /// The system with its observables in place of its rates, to differentiate them.
+    pub(crate) fn with_observables_as_rates(&self) -> FirstOrder<'g> {
+        let rates = self.observables.iter().map(|&(_, value)| value).collect();
+        FirstOrder { rates, ..self.clone() }
+    }
+
     /// The nonzero entries of each row of ∂g/∂w with their columns.
     pub(crate) fn coupling(&self) -> Vec<SparseColumn<'g>> {
         self.graph.jacobian(&self.rates, &self.unknowns)

@@ -178,6 +178,16 @@ impl<F: ExternalForce> ForcedMotion<F> {
         Ok(self.motion.parameters())
     }
 
+    /// The derivatives ∂q/∂y of the forces at (t, y), column by column: that of force i by component j of the state is at i +
+    /// j e for e forces.
+    ///
+    /// # Errors
+    /// [`ForceError::Failed`] and [`ForceError::SlopeNotFinite`].
+    pub fn force_jacobian(&mut self, t: f64, y: &[f64]) -> Result<&[f64], Failure> {
+        self.find_slopes(t, y)?;
+        Ok(&self.slopes)
+    }
+
     /// The residual of each constraint at (t, y), as [`Motion::constraint_residuals`] gives it.
     ///
     /// # Panics
@@ -245,6 +255,12 @@ impl<F: ExternalForce> ForcedMotion<F> {
 
     /// Computes ∂q/∂y and ∂f/∂(p, q).
     fn differentiate(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        self.find_slopes(t, y)?;
+        self.motion.parameter_jacobian(t, y, &mut self.columns)
+    }
+
+    /// Computes ∂q/∂y.
+    fn find_slopes(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
         self.slopes.fill(f64::NAN);
         let outcome = self.force.jacobian(t, y, &mut self.slopes);
         outcome.map_err(|failure| self.failed(&failure, t))?;
@@ -258,7 +274,7 @@ impl<F: ExternalForce> ForcedMotion<F> {
                 state: self.state(y),
             })));
         }
-        self.motion.parameter_jacobian(t, y, &mut self.columns)
+        Ok(())
     }
 
     /// The columns of ∂f/∂q, one after the other.

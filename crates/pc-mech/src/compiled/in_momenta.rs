@@ -8,6 +8,7 @@ use pc_expr::{
 };
 
 use crate::compiled::elimination::columns::derivative;
+use crate::compiled::elimination::observed::By;
 use crate::compiled::failure::check_finite;
 use crate::compiled::legendre_transform::LegendreTransform;
 use crate::compiled::motion::{InMomenta, Motion, Slopes};
@@ -116,7 +117,8 @@ impl InMomenta {
             inner: Box::new(multipliers.compile_for(CompileOptions { jvp: false, ..*options })?),
             transport: Evaluator::new(Program::new(graph, &inputs, &rates)?, Backend::Interpreter),
             jacobian: options.jacobian.then(|| slopes(&unmoved)).transpose()?,
-            parameter_jacobian: (options.jacobian && options.parameter_jacobian)
+            parameter_jacobian: (options.jacobian
+                && (options.parameter_jacobian || options.observable_jacobian))
                 .then(|| slopes(&parameters))
                 .transpose()?,
             time_derivative: (options.jacobian && options.time_derivative)
@@ -336,29 +338,13 @@ impl InMomenta {
     /// Computes the columns of ∂f/∂q for each symbol q, then those of ∂f/∂y, into `columns` of `slopes`; (ẋ,
     /// η̇, ż) has the derivatives `of_inner` with respect to (x, η, z) and `by_symbol` with respect to q.
     fn change(&mut self, slopes: &mut Slopes, t: f64) -> Result<(), Failure> {
+        self.change_of_velocities(slopes, t)?;
         let (n, k, dim) = (self.inner.coordinates(), self.quasi_velocities, self.state.len());
         let (m, of_inner) = (slopes.multipliers, &self.of_inner);
         let stride = 2 * k + m;
-        slopes.entries.eval(t, &self.known, self.inner.parameters(), &mut slopes.values);
-        check_finite(
-            &slopes.values,
-            &slopes.entries,
-            Point { t, y: &self.known, p: self.inner.parameters() },
-        )
-        .map_err(|failure| self.inner.failure(failure, t, &self.known[..dim]))?;
         let (by_q, moving) = slopes.values.split_at(slopes.symbols * stride);
         let (by_eta, mass) = moving.split_at(k * k);
-        // ∂h/∂q, then ∂h/∂y
-        let h = &mut slopes.of_unknowns;
-        h.fill(0.0);
-        for (q, column) in h.chunks_exact_mut(k + m).enumerate() {
-            match q.checked_sub(slopes.symbols) {
-                None => column.copy_from_slice(&by_q[q * stride + k..(q + 1) * stride]),
-                Some(s) => column[s] = 1.0,
-            }
-        }
-        self.transform.solve_last(h);
-        for (q, h) in h.chunks_exact(k + m).enumerate() {
+        for (q, h) in slopes.of_unknowns.chunks_exact(k + m).enumerate() {
             let is_symbol = q < slopes.symbols;
             let column = &mut slopes.columns[q * dim..(q + 1) * dim];
             for (i, change) in column.iter_mut().enumerate() {
@@ -376,7 +362,98 @@ impl InMomenta {
         }
         Ok(())
     }
+
+    /// Computes the entries of `slopes`, and ∂h/∂q for each symbol q, then ∂h/∂y, into its `of_unknowns`.
+    fn change_of_velocities(&mut self, slopes: &mut Slopes, t: f64) -> Result<(), Failure> {
+        let (k, dim, m) = (self.quasi_velocities, self.state.len(), slopes.multipliers);
+        let stride = 2 * k + m;
+        slopes.entries.eval(t, &self.known, self.inner.parameters(), &mut slopes.values);
+        check_finite(
+            &slopes.values,
+            &slopes.entries,
+            Point { t, y: &self.known, p: self.inner.parameters() },
+        )
+        .map_err(|failure| self.inner.failure(failure, t, &self.known[..dim]))?;
+        let by_q = &slopes.values[..slopes.symbols * stride];
+        let h = &mut slopes.of_unknowns;
+        h.fill(0.0);
+        for (q, column) in h.chunks_exact_mut(k + m).enumerate() {
+            match q.checked_sub(slopes.symbols) {
+                None => column.copy_from_slice(&by_q[q * stride + k..(q + 1) * stride]),
+                Some(s) => column[s] = 1.0,
+            }
+        }
+        self.transform.solve_last(h);
+        Ok(())
+    }
+
+    /// Writes the derivatives of the observables column by column, with η = h(t, x, y, z) in
+    /// those of the motion of (x, η, z); not finite where momenta do not determine quasi-velocities.
+    ///
+    /// # Errors
+    /// [`EvaluationError::NotCompiled`].
+    pub(crate) fn observed_slopes(
+        &mut self,
+        by: By,
+        (t, y): (f64, &[f64]),
+        entries: &mut [f64],
+    ) -> Result<(), Failure> {
+        let kept = match by {
+            By::State => &mut self.jacobian,
+            By::Parameters => &mut self.parameter_jacobian,
+        };
+        let mut slopes = kept.take().ok_or_else(|| not_compiled(OF_OBSERVABLES))?;
+        let outcome = self.observed_slopes_by(&mut slopes, by, (t, y), entries);
+        match by {
+            By::State => self.jacobian = Some(slopes),
+            By::Parameters => self.parameter_jacobian = Some(slopes),
+        }
+        match outcome {
+            Err(failure) if failure.is_recoverable() => {
+                entries.fill(f64::NAN);
+                Ok(())
+            }
+            other => other,
+        }
+    }
+
+    fn observed_slopes_by(
+        &mut self,
+        slopes: &mut Slopes,
+        by: By,
+        (t, y): (f64, &[f64]),
+        entries: &mut [f64],
+    ) -> Result<(), Failure> {
+        let mut rates = std::mem::take(&mut self.rates);
+        let outcome = self.solve(t, y, &mut rates);
+        self.rates = rates;
+        outcome?;
+        self.change_of_velocities(slopes, t)?;
+        let (dim, moving, m) = (y.len(), self.moving(), slopes.multipliers);
+        let rows = self.inner.observable_names().len();
+        let mut of_inner = vec![0.0; rows * dim];
+        self.inner.observable_jacobian(t, &self.state, &mut of_inner)?;
+        let columns: Vec<usize> = match by {
+            By::State => (0..dim).filter(|i| !moving.contains(i)).chain(moving.clone()).collect(),
+            By::Parameters => (0..slopes.symbols).collect(),
+        };
+        match by {
+            By::State => entries.copy_from_slice(&of_inner),
+            By::Parameters => self.inner.observable_parameter_jacobian(t, &self.state, entries)?,
+        }
+        for (&column, h) in columns.iter().zip(slopes.of_unknowns.chunks_exact(moving.len() + m)) {
+            let is_momentum = by == By::State && moving.contains(&column);
+            for (i, entry) in entries[column * rows..(column + 1) * rows].iter_mut().enumerate() {
+                let through: f64 = moving.clone().zip(h).map(|(s, h)| of_inner[i + s * rows] * h).sum();
+                *entry = if is_momentum { through } else { *entry + through };
+            }
+        }
+        Ok(())
+    }
 }
+
+/// What is missing where the derivatives of observables were not compiled.
+pub(crate) const OF_OBSERVABLES: &str = "derivatives of observables";
 
 fn not_compiled(what: &'static str) -> Failure {
     Failure::fatal(MechError::Evaluation(EvaluationError::NotCompiled { what }))

@@ -9,10 +9,12 @@ use serde::{Deserialize, Serialize};
 use crate::compiled::change_point::watch::Watch;
 use crate::compiled::chart::Chart;
 use crate::compiled::elimination::numeric::{OF_A_LOOP, Staged};
+use crate::compiled::elimination::observed::By;
 use crate::compiled::elimination::schur::Schur;
 use crate::compiled::elimination::symbolic::Unrolled;
 use crate::compiled::failure::EvaluationFailure;
 use crate::compiled::holds::Holds;
+use crate::compiled::in_momenta::OF_OBSERVABLES;
 use crate::compiled::legendre_transform::LegendreTransform;
 use crate::compiled::machine_code::MachineCode;
 use crate::compiled::options::{CompileOptions, TreeElimination};
@@ -274,6 +276,66 @@ impl Motion {
     /// [`observable_names`](Motion::observable_names).
     pub fn observe_to(&mut self, t: f64, y: &[f64], values: &mut [f64]) {
         self.watch(t, y, values, true);
+    }
+
+    /// Writes the derivatives ∂h/∂y of the observables h(t, y), column by column: that of observable i by component j
+    /// is at i + j o, where o is the number of [observables](Motion::observable_names). In observables with accelerations or
+    /// reactions these change with the state. An entry is not finite where its observable has no derivative, as that of a
+    /// speed at rest, or no value. The derivatives are those on one side of surfaces where rates jump.
+    ///
+    /// # Errors
+    /// [`EvaluationError::NotCompiled`](crate::EvaluationError::NotCompiled) unless they were
+    /// [compiled](CompileOptions::observable_jacobian).
+    ///
+    /// # Panics
+    /// If a length is wrong.
+    pub fn observable_jacobian(&mut self, t: f64, y: &[f64], entries: &mut [f64]) -> Result<(), Failure> {
+        self.observed_slopes(By::State, (t, y), entries, y.len())
+    }
+
+    /// Writes the derivatives ∂h/∂p of the observables by the parameters, followed by those by the external forces, column
+    /// by column, as [`observable_jacobian`](Motion::observable_jacobian) writes ∂h/∂y.
+    ///
+    /// # Errors
+    /// As there.
+    ///
+    /// # Panics
+    /// As there.
+    pub fn observable_parameter_jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        entries: &mut [f64],
+    ) -> Result<(), Failure> {
+        let columns = self.parameters().len();
+        self.observed_slopes(By::Parameters, (t, y), entries, columns)
+    }
+
+    fn observed_slopes(
+        &mut self,
+        by: By,
+        (t, y): (f64, &[f64]),
+        entries: &mut [f64],
+        columns: usize,
+    ) -> Result<(), Failure> {
+        assert_eq!(y.len(), self.names.len(), "length of the state");
+        assert_eq!(entries.len(), self.observable_names.len() * columns, "length of the derivatives");
+        if self.signals.show(t, &mut self.parameters).is_err() {
+            entries.fill(f64::NAN);
+            return Ok(());
+        }
+        let at = Point { t, y, p: &self.parameters };
+        let is_known = match &mut self.form {
+            Form::Unrolled(unrolled) => {
+                unrolled.observed_slopes().map(|slopes| slopes.eval(by, at, entries)).is_some()
+            }
+            Form::Staged(staged) => staged.observed_slopes(by, at, entries),
+            Form::InMomenta(motion) => return motion.observed_slopes(by, (t, y), entries),
+        };
+        match is_known {
+            true => Ok(()),
+            false => Err(self.failure(EvaluationFailure::NotCompiled { what: OF_OBSERVABLES }, t, y)),
+        }
     }
 
     /// The observables on the side of each surface that the signs at y indicate, even where the motion slides along

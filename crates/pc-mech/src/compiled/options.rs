@@ -31,6 +31,7 @@ pub struct CompileOptions {
     pub(crate) jvp: bool,
     pub(crate) parameter_jacobian: bool,
     pub(crate) time_derivative: bool,
+    pub(crate) observable_jacobian: bool,
     pub(crate) elimination: TreeElimination,
 }
 
@@ -57,6 +58,7 @@ impl Default for CompileOptions {
             jvp: false,
             parameter_jacobian: false,
             time_derivative: false,
+            observable_jacobian: false,
             elimination: TreeElimination::default(),
         }
     }
@@ -105,5 +107,13 @@ impl CompileOptions {
     #[must_use]
     pub fn time_derivative(self, time_derivative: bool) -> CompileOptions {
         CompileOptions { time_derivative, ..self }
+    }
+
+    /// Whether to compile the derivatives of the observables [by the state](crate::Motion::observable_jacobian) and [by the
+    /// parameters](crate::Motion::observable_parameter_jacobian); for a motion in momenta under constraints this requires
+    /// the Jacobian as well.
+    #[must_use]
+    pub fn observable_jacobian(self, observable_jacobian: bool) -> CompileOptions {
+        CompileOptions { observable_jacobian, ..self }
     }
 }

@@ -122,9 +122,13 @@ impl Model {
     /// The options of the compilation. If there are external forces, the derivatives with respect to them are
     /// part of the Jacobian.
     fn options(&self) -> CompileOptions {
+        let of_observables = self.differentiates_observables();
+        let by_parameters =
+            self.differentiates_by_parameters() || of_observables || !self.external.is_empty();
         CompileOptions::default()
-            .parameter_jacobian(self.differentiates_by_parameters() || !self.external.is_empty())
+            .parameter_jacobian(by_parameters)
             .time_derivative(self.differentiates_by_time())
+            .observable_jacobian(of_observables)
     }
 
     /// The compiled motion, if it can be evaluated at the start, with projection onto the integrals to be

@@ -1,7 +1,7 @@
 //! Jacobians of points of bodies and of momenta, in the variables of a state.
 
 use pc_expr::Evaluator;
-use pc_mech::{Equations, Expr, VelocityMap};
+use pc_mech::{Equations, Expr, Graph, VelocityMap};
 use serde::{Deserialize, Serialize};
 
 use crate::assembly::assembly::Assembly;
@@ -11,7 +11,7 @@ use crate::diagnostics::meaning::MeaningError;
 use crate::diagnostics::source::{Place, Source};
 use crate::document::Orientation;
 use crate::model::model::Model;
-use crate::names::body_motion::turned;
+use crate::names::body_motion::{BodyMotion, turned};
 use crate::names::momenta::cross;
 use crate::names::moving::Moving;
 use crate::names::scope::Scope;
@@ -93,20 +93,64 @@ impl Model {
         variables: Variables,
         name: &str,
     ) -> Result<VelocityMap, ModelError> {
-        let (document, graph) = (self.document(), assembly.system.graph());
-        let mut scope = Scope::new(graph, document);
+        let graph = assembly.system.graph();
+        let mut scope = Scope::new(graph, self.document());
+        let arguments = arguments(graph);
+        let OnBody { motion, from } = self.on_body(&mut scope, name, "ω")?;
+        let to_fixed = |v: &[Expr<'g>; 3]| turned(&motion.rotation, v, |r, i, j| r[(i, j)], graph);
+        let arm = [0, 1, 2].map(|i| from[i] + arguments[i]);
+        let carried = to_fixed(&cross(&motion.turning, &arm));
+        let velocity = [0, 1, 2].map(|i| motion.velocity[i] + carried[i]);
+        let functions = [velocity, to_fixed(&motion.turning)].concat();
+        let functions = assembly.without_velocities(&scope, &functions);
+        assembly.velocity_map(variables, &functions, &arguments)
+    }
+
+    /// The position r of a point of a body along fixed axes, followed by the rotation R of this body, column by column: twelve
+    /// functions of t, (x, η, z), the parameters and, after these, the position of the point as in
+    /// [`body_map`](Model::body_map). R takes components along the axes of the body to those along fixed axes; it is the unit
+    /// matrix for a particle, and for a point of the world.
+    ///
+    /// # Errors
+    /// As for [`body_map`](Model::body_map).
+    pub fn body_pose(
+        &self,
+        assembly: &Assembly<'_>,
+        variables: Variables,
+        name: &str,
+    ) -> Result<Evaluator, ModelError> {
+        let graph = assembly.system.graph();
+        let mut scope = Scope::new(graph, self.document());
+        let arguments = arguments(graph);
+        let OnBody { motion: BodyMotion { place, rotation, .. }, from } =
+            self.on_body(&mut scope, name, "R")?;
+        let arm = [0, 1, 2].map(|i| from[i] + arguments[i]);
+        let carried = turned(&rotation, &arm, |r, i, j| r[(i, j)], graph);
+        let columns = (0..9).map(|ij| rotation[(ij % 3, ij / 3)]);
+        let values: Vec<_> = (0..3).map(|i| place[i] + carried[i]).chain(columns).collect();
+        let equations = assembly.equations_in(variables)?;
+        assembly.placed(equations.functions(&values, &arguments))
+    }
+
+    /// The motion of the body with this name, or of that which carries the point with this name; the world, at rest,
+    /// carries a point without a body. `wanted` is what a body without a rotation lacks.
+    fn on_body<'g>(
+        &self,
+        scope: &mut Scope<'g, '_>,
+        name: &str,
+        wanted: &str,
+    ) -> Result<OnBody<'g>, ModelError> {
+        let document = self.document();
         let point = document.points.iter().find(|point| point.name.text == name);
         let mut from = [Expr::ZERO; 3];
         if let Some(at) = point.and_then(|point| point.at.as_ref()) {
             from = scope.constants(at)?;
         }
-        // No name of a text has a blank.
-        let arguments = ["1", "2", "3"].map(|i| graph.symbol(&format!("place {i}")));
         let body = match point {
             None => name,
             Some(point) => match point.body() {
                 Some(body) => body,
-                None => return assembly.velocity_map(variables, &[Expr::ZERO; 6], &arguments),
+                None => return Ok(OnBody { motion: BodyMotion::at_rest(), from }),
             },
         };
         let placed = document.bodies.iter().find(|known| known.name.text == body);
@@ -118,16 +162,10 @@ impl Model {
         if let Some(Orientation::AngularVelocity(_)) = placed.and_then(|placed| placed.orientation.as_ref())
             && attitude.is_none()
         {
-            return Err(self.no_fixed_axes("ω", body));
+            return Err(self.no_fixed_axes(wanted, body));
         }
         let motion = scope.body_motion(body, attitude.map(|attitude| &*attitude.value))?;
-        let to_fixed = |v: &[Expr<'g>; 3]| turned(&motion.rotation, v, |r, i, j| r[(i, j)], graph);
-        let arm = [0, 1, 2].map(|i| from[i] + arguments[i]);
-        let carried = to_fixed(&cross(&motion.turning, &arm));
-        let velocity = [0, 1, 2].map(|i| motion.velocity[i] + carried[i]);
-        let functions = [velocity, to_fixed(&motion.turning)].concat();
-        let functions = assembly.without_velocities(&scope, &functions);
-        assembly.velocity_map(variables, &functions, &arguments)
+        Ok(OnBody { motion, from })
     }
 
     /// The names that [`body_map`](Model::body_map) takes: those of bodies, then those of points.
@@ -166,6 +204,19 @@ impl Model {
         let place = Place { entry: String::new(), span: 0..name.len() };
         Source::new("body", name).error(&place, ErrorKind::Meaning(fault))
     }
+}
+
+/// A point of a body, or of the world.
+struct OnBody<'g> {
+    motion: BodyMotion<'g>,
+    /// The place of `[points]` from which the point is measured, along the axes of the body.
+    from: [Expr<'g>; 3],
+}
+
+/// The position of a point along the axes of its body.
+fn arguments<'g>(graph: &'g Graph) -> [Expr<'g>; 3] {
+    // No name of a text has a blank.
+    ["1", "2", "3"].map(|i| graph.symbol(&format!("place {i}")))
 }
 
 /// Σ m r/Σ m

@@ -31,6 +31,7 @@ pub struct Model {
     /// Whether motions and events are to be differentiated with respect to parameters.
     pub(super) by_parameters: bool,
     pub(super) by_time: bool,
+    pub(super) of_observables: bool,
     /// The names of the integrals to be kept.
     pub(super) kept: Vec<String>,
     /// The limits on derivations from this model.
@@ -97,6 +98,7 @@ impl Model {
             observes_reactions: false,
             by_parameters: false,
             by_time: false,
+            of_observables: false,
             kept,
             budget: Budget::default(),
             external: Vec::new(),
@@ -284,6 +286,16 @@ impl Model {
     /// Sets whether motions are compiled with [∂f/∂t](pc_mech::Motion::time_derivative).
     pub fn differentiate_by_time(&mut self, yes: bool) {
         self.by_time = yes;
+    }
+
+    /// Sets whether motions are compiled with the [derivatives of their observables](pc_mech::Motion::observable_jacobian),
+    /// and with ∂f/∂p.
+    pub fn differentiate_observables(&mut self, yes: bool) {
+        self.of_observables = yes;
+    }
+
+    pub(crate) fn differentiates_observables(&self) -> bool {
+        self.of_observables
     }
 
     pub(crate) fn differentiates_by_time(&self) -> bool {

@@ -19,6 +19,7 @@ pub(super) struct StoredModel {
     observes_reactions: bool,
     by_parameters: bool,
     by_time: bool,
+    of_observables: bool,
     kept: Vec<String>,
     external: Vec<String>,
     /// The quasi-velocities of the text were removed.
@@ -51,6 +52,7 @@ impl From<Model> for StoredModel {
             observes_reactions: model.observes_reactions,
             by_parameters: model.by_parameters,
             by_time: model.by_time,
+            of_observables: model.of_observables,
             kept: model.kept,
             external: model.external,
             independent: model.independent,
@@ -76,6 +78,7 @@ impl TryFrom<StoredModel> for Model {
         model.observes_reactions = stored.observes_reactions;
         model.by_parameters = stored.by_parameters;
         model.by_time = stored.by_time;
+        model.of_observables = stored.of_observables;
         model.kept = stored.kept;
         model.external = stored.external;
         model.independent = stored.independent;

@@ -18,6 +18,14 @@ pub(crate) struct BodyMotion<'g> {
     pub(crate) turning: Vector<'g>,
 }
 
+impl BodyMotion<'_> {
+    /// That of the fixed axes.
+    pub(crate) fn at_rest() -> Self {
+        let zero = [Expr::ZERO; 3];
+        BodyMotion { place: zero, rotation: unit_matrix(), velocity: zero, turning: zero }
+    }
+}
+
 impl<'g> Scope<'g, '_> {
     /// The motion of a body of the document in terms of coordinates, x', quasi-velocities and t. `attitude` is the rotation
     /// of a body of which only the angular velocity is given.

@@ -70,6 +70,17 @@ impl<F: VectorField> fmt::Debug for Auto<F> {
 }
 
 impl<F: VectorField> Auto<F> {
+    /// The estimated local errors of the components in the last step, where BDF made it; none where DOP853 did.
+    ///
+    /// # Errors
+    /// As for [`Cvode::local_errors`].
+    pub(crate) fn local_errors(&mut self) -> Result<Option<&[f64]>, SolveError> {
+        match &mut self.engine {
+            Some(Engine::Implicit(cvode)) => cvode.local_errors().map(Some),
+            Some(Engine::Explicit(_)) | None => Ok(None),
+        }
+    }
+
     /// Starts at y(t0) = y0, one number per component; the method chosen in the options is ignored,
     /// but the options for implicit equations apply to the BDF method.
     ///

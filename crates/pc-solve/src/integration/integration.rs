@@ -281,6 +281,11 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         &self.engine
     }
 
+    /// The method, mutable: it may compute what it knows of the last step, but must not make one.
+    pub(crate) fn stepper_mut(&mut self) -> &mut S {
+        &mut self.engine
+    }
+
     /// Ends the integration and returns the vector field.
     pub fn into_field(mut self) -> S::Field {
         self.release();

@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 use crate::events::events::Occurrence;
+use crate::integration::statistics::Statistics;
 
 /// An observer of a motion during its integration, which it may stop.
 ///
@@ -20,6 +21,16 @@ pub trait Observer {
     /// The end (t, y⁻) of a step, or of the part of a step before an event; called before the
     /// outputs inside the step, to show progress or to stop.
     fn step(&mut self, _t: f64, _y: &[f64]) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    /// Whether it receives the ends of steps with the [work so far](Observer::measured) too, which takes time to collect.
+    fn measures(&self) -> bool {
+        false
+    }
+
+    /// The same end of a step with the work so far, which includes the order and the length of the step.
+    fn measured(&mut self, _t: f64, _y: &[f64], _work: &Statistics) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 }

@@ -27,8 +27,19 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         t: f64,
         occurred: impl FnMut(&Occurrence) -> ControlFlow<()>,
     ) -> Result<Ending, SolveError> {
+        self.advance_observed(
+            t,
+            Observed::new(|_, _: &[f64]| ControlFlow::Continue(())).occurrences(occurred),
+        )
+    }
+
+    /// Like [`advance_to`](Integration::advance_to), but reports events and steps to an [`Observer`], which receives no
+    /// output.
+    ///
+    /// # Errors
+    /// As for [`advance_to`](Integration::advance_to).
+    pub fn advance_observed(&mut self, t: f64, mut observer: impl Observer) -> Result<Ending, SolveError> {
         self.check_ahead(t)?;
-        let mut observer = Observed::new(|_, _: &[f64]| ControlFlow::Continue(())).occurrences(occurred);
         Ok(self.advance(t, t, &mut observer)?.unwrap_or(Ending::Completed))
     }
 
@@ -156,12 +167,21 @@ impl<S: Stepper, E: Events> Integration<S, E> {
                 steps += 1;
                 self.note_pace(end)?;
             }
-            if observer.step(self.front.t, &self.front_state).is_break() {
+            if self.report_step(observer).is_break() {
                 return Ok(Some(Ending::Stopped));
             }
         }
         self.stand_at(t)?;
         Ok(None)
+    }
+
+    /// Reports the end of a step, or of the part of a step before an event.
+    pub(crate) fn report_step(&self, observer: &mut dyn Observer) -> ControlFlow<()> {
+        observer.step(self.front.t, &self.front_state)?;
+        if observer.measures() {
+            observer.measured(self.front.t, &self.front_state, &self.statistics())?;
+        }
+        ControlFlow::Continue(())
     }
 
     /// Applies the events at the time where an observer has stopped the integration; returns how

@@ -29,20 +29,34 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     pub fn step(
         &mut self,
         towards: f64,
-        mut occurred: impl FnMut(&Occurrence) -> ControlFlow<()>,
+        occurred: impl FnMut(&Occurrence) -> ControlFlow<()>,
     ) -> Result<Ending, SolveError> {
+        let observer = Observed::new(|_, _: &[f64]| ControlFlow::Continue(())).occurrences(occurred);
+        self.step_observed(towards, observer)
+    }
+
+    /// Like [`step`](Integration::step), but reports to an [`Observer`], which receives no output. If it stops the motion at
+    /// the end of the step, events there are left for the next call.
+    ///
+    /// # Errors
+    /// As for [`step`](Integration::step).
+    pub fn step_observed(&mut self, towards: f64, mut observer: impl Observer) -> Result<Ending, SolveError> {
         self.check_ahead(towards)?;
         if towards == self.time() {
             return Err(InputError::EndIsStart { t: towards }.into());
         }
         if self.time() == self.front.t && self.due.is_empty() {
             self.go_on(towards)?;
+            self.engine.stand_at(self.front.t);
+            if self.report_step(&mut observer).is_break() {
+                return Ok(Ending::Stopped);
+            }
         }
         self.engine.stand_at(self.front.t);
         if self.due.is_empty() {
             return Ok(Ending::Completed);
         }
-        Ok(self.occur(&mut occurred)?.unwrap_or(Ending::Completed))
+        Ok(self.occur(&mut |occurrence| observer.occurred(occurrence))?.unwrap_or(Ending::Completed))
     }
 
     /// The derivative of y of the given order at `t` in the last step, from the polynomial of the
@@ -71,10 +85,24 @@ impl<S: Stepper, E: Events> Integration<S, E> {
     pub fn run_dense(
         &mut self,
         end: f64,
-        mut segment: impl FnMut(Segment) -> ControlFlow<()>,
+        segment: impl FnMut(Segment) -> ControlFlow<()>,
         occurred: impl FnMut(&Occurrence) -> ControlFlow<()>,
     ) -> Result<Ending, SolveError> {
-        let mut observer = Observed::new(|_, _: &[f64]| ControlFlow::Continue(())).occurrences(occurred);
+        let observer = Observed::new(|_, _: &[f64]| ControlFlow::Continue(())).occurrences(occurred);
+        self.run_dense_observed(end, segment, observer)
+    }
+
+    /// Like [`run_dense`](Integration::run_dense), but reports to an [`Observer`], which receives no output; the end of a
+    /// step follows its segment.
+    ///
+    /// # Errors
+    /// As for [`run_dense`](Integration::run_dense).
+    pub fn run_dense_observed(
+        &mut self,
+        end: f64,
+        mut segment: impl FnMut(Segment) -> ControlFlow<()>,
+        mut observer: impl Observer,
+    ) -> Result<Ending, SolveError> {
         self.run_in_pieces(end, &mut observer, &mut |integration, from, to| {
             Ok(segment(integration.segment(from, to)?))
         })
@@ -89,7 +117,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
         piece: &mut Piece<'_, Self>,
     ) -> Result<Ending, SolveError> {
         self.check_times(&[end])?;
-        let mut steps = 0;
+        let (mut steps, mut is_reported) = (0, true);
         loop {
             let (from, state) = (self.time(), self.state().to_vec());
             let next = if self.is_before_front(end) { end } else { self.front.t };
@@ -98,6 +126,12 @@ impl<S: Stepper, E: Events> Integration<S, E> {
                 let reached = self.state().to_vec();
                 if piece(self, (from, &state), (next, &reached))?.is_break() {
                     return Ok(Ending::Stopped);
+                }
+                if !is_reported {
+                    is_reported = true;
+                    if self.report_step(observer).is_break() {
+                        return Ok(Ending::Stopped);
+                    }
                 }
             } else if !self.due.is_empty() && from == self.front.t {
                 if let Some(ending) = self.occur(&mut |occurrence| observer.occurred(occurrence))? {
@@ -108,7 +142,7 @@ impl<S: Stepper, E: Events> Integration<S, E> {
             } else {
                 self.check_steps(steps, end)?;
                 self.go_on(end)?;
-                steps += 1;
+                (steps, is_reported) = (steps + 1, false);
             }
         }
     }

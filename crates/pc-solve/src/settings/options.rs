@@ -91,7 +91,8 @@ impl Options {
     /// Sets the inequalities to be satisfied, one for each component; there are none by default.
     ///
     /// Inequalities cannot be combined with a field [that has a
-    /// projection](pc_expr::VectorField::has_projection), which would move the states again.
+    /// projection](pc_expr::VectorField::has_projection), which would move the states again, nor with
+    /// [`Method::Taylor`], which imposes none.
     pub fn inequalities(self, inequalities: Vec<Inequality>) -> Self {
         Options { inequalities, ..self }
     }
@@ -196,6 +197,7 @@ impl Options {
             Method::Dop853 | Method::Auto if self.max_order.is_some() => Some("a highest order"),
             Method::Dop853 | Method::Taylor if self.nonlinear_solver.is_some() => Some("an iteration"),
             Method::Dop853 | Method::Taylor if linear => Some("a linear solver"),
+            Method::Taylor if !self.inequalities.is_empty() => Some("inequalities"),
             Method::Dop853 | Method::Taylor | Method::Auto => None,
         };
         refused.map_or(Ok(()), |what| Err(InputError::Explicit { method: self.method, what }))

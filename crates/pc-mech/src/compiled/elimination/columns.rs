@@ -63,17 +63,17 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
-    /// The matrix with the given columns.
+    /// The matrix with the given number of rows and the given columns.
     ///
     /// # Errors
     /// As for [`Program::new`].
     pub(crate) fn new<'g>(
         graph: &'g Graph,
         inputs: &Inputs<'g>,
-        columns: Vec<SparseColumn<'g>>,
+        (rows, columns): (usize, Vec<SparseColumn<'g>>),
         backend: Backend,
     ) -> Result<Columns, ExprError> {
-        let (pattern, values) = nonzeros(inputs.state.len(), columns);
+        let (pattern, values) = nonzeros(rows, columns);
         let entries = derivative(graph, inputs, &values, backend)?;
         Ok(Columns { values: vec![0.0; pattern.len()], pattern, entries })
     }

@@ -6,6 +6,7 @@ use pc_expr::{Backend, Cost, Evaluator, Expr, ExprError, Pattern, Program, Steep
 use serde::{Deserialize, Serialize};
 
 use crate::compiled::elimination::columns::{SparseColumn, Storage, derivative, nonzeros, sparse};
+use crate::compiled::elimination::observed::By;
 use crate::compiled::elimination::schur::Schur;
 use crate::compiled::elimination::solver::Solver;
 use crate::compiled::failure::{EvaluationFailure, check_finite};
@@ -35,6 +36,8 @@ pub(crate) struct Staged {
     time_derivative: Option<Stage>,
     /// The observables as functions of (t, (y, w)).
     observables: Evaluator,
+    /// Their derivatives by the state and by the parameters.
+    observed_slopes: Option<Box<[Stage; 2]>>,
 }
 
 /// The number of operations in straight-line code that take about as long as one operation of a factorisation
@@ -90,6 +93,15 @@ impl Staged {
             parameter_jacobian: stage(options.parameter_jacobian, &system.parameter_symbols())?,
             time_derivative: stage(options.time_derivative, &[system.time])?,
             observables: compiled(&known, &observed, Backend::Interpreter)?,
+            observed_slopes: options
+                .observable_jacobian
+                .then(|| -> Result<_, ExprError> {
+                    let (observing, backend) = (system.with_observables_as_rates(), options.backend);
+                    let by_state = Stage::new(&observing, &system.state, backend)?;
+                    let by_parameters = Stage::new(&observing, &system.parameter_symbols(), backend)?;
+                    Ok(Box::new([by_state, by_parameters]))
+                })
+                .transpose()?,
         })
     }
 
@@ -203,6 +215,40 @@ impl Staged {
         self.observables.eval(t, &self.known, p, values);
     }
 
+    /// Writes the derivatives of the observables column by column; they are not finite where an observable has none, or
+    /// contains w and there is no solution for w. Returns false if they were not compiled.
+    pub(crate) fn observed_slopes(
+        &mut self,
+        by: By,
+        Point { t, y, p }: Point<'_>,
+        entries: &mut [f64],
+    ) -> bool {
+        let solved = self.solve(t, y, p).is_ok();
+        let Some(stages) = &mut self.observed_slopes else { return false };
+        let [by_state, by_parameters] = &mut **stages;
+        let stage = match by {
+            By::State => by_state,
+            By::Parameters => by_parameters,
+        };
+        // Those w that are not determined: all, or the reactions of spare constraints.
+        let determined = match (solved, self.solver.takes_spare()) {
+            (false, _) => self.dim,
+            (true, true) => self.known.len() - self.multipliers,
+            (true, false) => self.known.len(),
+        };
+        self.known[determined..].fill(f64::NAN);
+        stage.parts.eval(t, &self.known, p, &mut stage.values);
+        if solved {
+            stage.solve(&mut self.solver);
+        }
+        let k = self.known.len() - self.dim;
+        for column in stage.unknowns.chunks_exact_mut(k.max(1)) {
+            column[determined - self.dim..].fill(f64::NAN);
+        }
+        stage.write(entries, Storage::Dense);
+        true
+    }
+
     pub(crate) fn jacobian(
         &mut self,
         Point { t, y, p }: Point<'_>,
@@ -268,7 +314,7 @@ struct Stage {
 impl Stage {
     fn new<'g>(system: &FirstOrder<'g>, symbols: &[Expr<'g>], backend: Backend) -> Result<Stage, ExprError> {
         let graph = system.graph;
-        let (dim, k) = (system.state.len(), system.unknowns.len());
+        let (dim, k) = (system.rates.len(), system.unknowns.len());
         let columns = |rows: &[Expr<'g>]| -> Vec<SparseColumn<'g>> {
             symbols.iter().map(|&symbol| sparse(&graph.directional(rows, &[(symbol, Expr::ONE)]))).collect()
         };
@@ -304,10 +350,20 @@ impl Stage {
     ) -> Result<(), EvaluationFailure> {
         self.parts.eval(t, known, p, &mut self.values);
         check_finite(&self.values, &self.parts, Point { t, y: known, p })?;
-        let (balance, rest) = self.values.split_at(self.balance.len());
-        let (rates, coupling) = rest.split_at(self.rates.len());
-        self.balance.scatter(balance, &mut self.unknowns);
+        self.solve(solver);
+        self.write(entries, storage);
+        Ok(())
+    }
+
+    /// Computes M⁻¹ ∂F/∂q from the values of the parts.
+    fn solve(&mut self, solver: &mut Solver) {
+        self.balance.scatter(&self.values[..self.balance.len()], &mut self.unknowns);
         solver.solve(&mut self.unknowns);
+    }
+
+    /// Writes ∂ẏ/∂q.
+    fn write(&mut self, entries: &mut [f64], storage: Storage) {
+        let (rates, coupling) = self.values[self.balance.len()..].split_at(self.rates.len());
         let (dim, k) = (self.pattern.rows(), self.balance.rows());
         for j in 0..self.pattern.columns() {
             let starts = self.rates.column_starts();
@@ -328,7 +384,6 @@ impl Stage {
                 }
             }
         }
-        Ok(())
     }
 }
 

@@ -11,6 +11,7 @@ use pc_expr::{
 use serde::{Deserialize, Serialize};
 
 use crate::compiled::elimination::columns::{Columns, Storage, derivative};
+use crate::compiled::elimination::observed::ObservedSlopes;
 use crate::compiled::elimination::pivots::Pivots;
 use crate::compiled::elimination::products::Products;
 use crate::compiled::elimination::prologue::Prologue;
@@ -39,6 +40,7 @@ pub(crate) struct Unrolled {
     parameter_jacobian: Option<Columns>,
     time_derivative: Option<Columns>,
     observables: Evaluator,
+    observed_slopes: Option<Box<ObservedSlopes>>,
     backend: Backend,
     /// The Taylor series of the outputs of `rates`, made on first use.
     #[serde(skip)]
@@ -62,9 +64,10 @@ impl Unrolled {
         let program = Program::new(graph, &inputs, &outputs)?;
 
         let linearised = LazyCell::new(|| Linearised::new(system, &factors, &unknowns));
+        let rows = system.rates.len();
         let columns = |wanted: bool, symbols: &[Expr<'_>]| {
             wanted
-                .then(|| Columns::new(graph, &inputs, linearised.columns(symbols), options.backend))
+                .then(|| Columns::new(graph, &inputs, (rows, linearised.columns(symbols)), options.backend))
                 .transpose()
         };
         let by_products = system.tree.as_ref().is_some_and(|tree| tree.is_large());
@@ -92,6 +95,10 @@ impl Unrolled {
             parameter_jacobian: columns(options.parameter_jacobian, &system.parameter_symbols())?,
             time_derivative: columns(options.time_derivative, &[system.time])?,
             observables: Evaluator::new(observed, Backend::Interpreter),
+            observed_slopes: options
+                .observable_jacobian
+                .then(|| ObservedSlopes::new(system, &factors, &unknowns, options.backend).map(Box::new))
+                .transpose()?,
             backend: options.backend,
             series: None,
             varied: VariedSeries::default(),
@@ -142,6 +149,11 @@ impl Unrolled {
 
     pub(crate) fn observe(&mut self, t: f64, y: &[f64], p: &[f64], values: &mut [f64]) {
         self.observables.eval(t, y, p, values);
+    }
+
+    /// The derivatives of the observables, if they were compiled.
+    pub(crate) fn observed_slopes(&mut self) -> Option<&mut ObservedSlopes> {
+        self.observed_slopes.as_deref_mut()
     }
 
     #[inline]
@@ -298,8 +310,17 @@ impl Unrolled {
 
 /// A direction v and the product (∂ẏ/∂y) v, by forward differentiation along v, without a Jacobian.
 fn product<'g>(system: &FirstOrder<'g>, linearised: &Linearised<'_, 'g>) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
-    let v = system.fresh("δ", &system.state);
-    let along: Vec<_> = system.state.iter().copied().zip(v.iter().copied()).collect();
+    product_by(system, linearised, &system.state)
+}
+
+/// A direction v of changes of some `symbols`, and the derivative of the rates along it.
+pub(crate) fn product_by<'g>(
+    system: &FirstOrder<'g>,
+    linearised: &Linearised<'_, 'g>,
+    symbols: &[Expr<'g>],
+) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
+    let v = system.fresh("δ", symbols);
+    let along: Vec<_> = symbols.iter().copied().zip(v.iter().copied()).collect();
     let product = linearised.along(&along);
     (v, product)
 }
