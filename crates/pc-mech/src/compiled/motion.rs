@@ -8,12 +8,11 @@ use pc_expr::{
 use crate::compiled::change_point::watch::Watch;
 use crate::compiled::chart::Chart;
 use crate::compiled::elimination::numeric::{OF_A_LOOP, Staged};
-use crate::compiled::elimination::observed::By;
+use crate::compiled::elimination::observed::{By, OF_OBSERVABLES};
 use crate::compiled::elimination::schur::Schur;
 use crate::compiled::elimination::symbolic::Unrolled;
 use crate::compiled::failure::EvaluationFailure;
 use crate::compiled::holds::Holds;
-use crate::compiled::in_momenta::OF_OBSERVABLES;
 use crate::compiled::legendre_transform::LegendreTransform;
 use crate::compiled::machine_code::MachineCode;
 use crate::compiled::options::{CompileOptions, TreeElimination};
