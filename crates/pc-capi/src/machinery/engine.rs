@@ -4,8 +4,8 @@ use std::ops::ControlFlow;
 
 use pc_expr::{Event, Events};
 use pc_solve::{
-    Checkpoint, Chosen, DenseOutput, Ending, Occurrence, Options, Sensitivities, SolveError, Statistics,
-    Stepper, VectorField,
+    Checkpoint, Chosen, DenseOutput, Ending, Options, Sensitivities, SolveError, Statistics, Stepper,
+    VectorField,
 };
 
 use crate::ffi::call_error::CallError;
