@@ -23,9 +23,10 @@
  * failure a new handle or text is NULL, and arrays for results may hold anything.
  *
  * Ownership. What a function named ..._new, ..._clone, pc_model_parse, pc_model_from_file,
- * pc_model_builtin, pc_code_load, pc_system_of_code, pc_solver_restore or pc_solver_run_dense
- * gives, you free with the ..._free of its type; `char *` you free with pc_string_free, bytes with pc_bytes_free; `const char *`
- * belongs to the handle it came from and lives as long, or is static. All ..._free allow NULL.
+ * pc_model_builtin, pc_solver_restore, pc_solver_run_dense or pc_system_linearization gives, you
+ * free with the ..._free of its type; `char *` you free with pc_string_free, bytes with
+ * pc_bytes_free; `const char *` belongs to the handle it came from and lives as long, or is
+ * static. All ..._free allow NULL.
  * Handles are independent: a model can be freed while its system lives, and a system while its
  * solvers and kernels do.
  *
@@ -430,8 +431,8 @@ typedef struct pc_error pc_error;
 typedef struct pc_kernel pc_kernel;
 
 /**
- * The linear equations near a state, δẋ = A δx + B δu, δh = C δx + D δu, in independent components
- * x of the states that satisfy the constraints. It never changes. Free it with
+ * The linear equations near a state, δẋ = A δx + B δu, δh = C δx + D δu, in independent
+ * components x of the states that satisfy the constraints. It never changes. Free it with
  * pc_linearization_free.
  */
 typedef struct pc_linearization pc_linearization;
@@ -565,7 +566,7 @@ typedef struct {
   double accumulation;
   /**
    * A pc_inequality for each component of the state, copied; NULL, the default, for none. They
-   * hold at the ends of steps; a component that can not satisfy its inequality ends the
+   * hold at the ends of steps; a component that cannot satisfy its inequality ends the
    * integration. A start that does not satisfy them is refused, and so are inequalities with
    * PC_TAYLOR, and for systems whose states are projected.
    */
@@ -617,10 +618,11 @@ typedef void (*pc_destroy)(void *user);
 typedef int (*pc_observer)(double t, const double *y, size_t y_length, void *user);
 
 /**
- * Receives the end (t, y) of each internal step, or of the part of a step before an event, where y
- * is the state before the event; the order of the method in this step, and the length of the step,
- * with the sign of the direction. It may lie beyond the time to which the call integrates. Returns
- * 0 to continue; anything else ends the call with PC_STOPPED. Otherwise it is like pc_observer.
+ * Receives the end (t, y) of each internal step, or of the part of a step before an event, where
+ * y is the state before the event; the order of the method in this step, and the length of the
+ * step, with the sign of the direction. It may lie beyond the time to which the call integrates.
+ * Returns 0 to continue; anything else ends the call with PC_STOPPED. Otherwise it is like
+ * pc_observer.
  */
 typedef int (*pc_monitor)(double t,
                           const double *y,
@@ -2323,11 +2325,11 @@ pc_status pc_system_body_jacobian(const pc_system *system,
  * Writes the pose of a body at (t, y): the position r of one of its points along fixed axes, 3
  * numbers, followed by its rotation R, 3 × 3 and column-major, so `length` is 12. R takes
  * components along the axes of the body to those along fixed axes, so that its columns are the
- * axes of the body; a particle, and a point of the world, have the unit
- * matrix. `body` and `point` are as in pc_system_body_jacobian, whose J η + a is the rate of r. The
- * first call for a name derives the pose, as pc_system_new derives equations, for all points.
- * Returns PC_NOT_FOUND where there is no such body, and PC_INVALID_MODEL where its angular velocity
- * is given without a rotation.
+ * axes of the body; a particle, and a point of the world, have the unit matrix. `body` and
+ * `point` are as in pc_system_body_jacobian, whose J η + a is the rate of r. The first call for
+ * a name derives the pose, as pc_system_new derives equations, for all points. Returns
+ * PC_NOT_FOUND where there is no such body, and PC_INVALID_MODEL where its angular velocity is
+ * given without a rotation.
  */
 pc_status pc_system_body_pose(const pc_system *system,
                               double t,
@@ -2341,10 +2343,10 @@ pc_status pc_system_body_pose(const pc_system *system,
                               pc_error **error);
 
 /**
- * Writes the acceleration that a point of a body has at (t, y) besides J η̇, and the same part of
- * the angular acceleration of the body, along fixed axes: 6 numbers, (v̇, ω̇) − J η̇, which is J̇ η
- * where nothing depends on t. It is the last column of pc_system_body_jacobian, without the
- * others. With it η̇ = J⁺ (a − bias) gives the point the acceleration a. Otherwise like
+ * Writes the acceleration that a point of a body has at (t, y) besides J η̇, and the same part
+ * of the angular acceleration of the body, along fixed axes: 6 numbers, (v̇, ω̇) − J η̇, which
+ * is J̇ η where nothing depends on t. It is the last column of pc_system_body_jacobian, without
+ * the others. With it η̇ = J⁺ (a − bias) gives the point the acceleration a. Otherwise like
  * pc_system_body_jacobian.
  */
 pc_status pc_system_body_bias(const pc_system *system,
@@ -2360,8 +2362,8 @@ pc_status pc_system_body_bias(const pc_system *system,
 
 /**
  * Writes the generalised forces g, k numbers with k as in pc_system_mass_matrix, that hold the
- * system at rest in the position of (t, y): tau of pc_system_inverse_dynamics for η = 0 and
- * η̇ = 0, whatever the velocities of y are. They balance weight and springs, −X_s L at rest, and
+ * system at rest in the position of (t, y): tau of pc_system_inverse_dynamics for η = 0 and η̇ =
+ * 0, whatever the velocities of y are. They balance weight and springs, −X_s L at rest, and
  * those forces of the model that act at rest; external forces of the program, which are not
  * called, count as 0. The first call derives equations, as pc_system_new does.
  */
@@ -2375,10 +2377,11 @@ pc_status pc_system_gravity(const pc_system *system,
 
 /**
  * Writes the derivatives ∂h/∂y of the observables h of pc_system_observe at (t, y), o × dim and
- * column-major for o = pc_system_observable_count, so `length` is o*dim. Observables that contain
- * accelerations or reactions change with these, and external forces with the state, as they do in
- * pc_system_jacobian. An entry is not finite where its observable has no derivative, as that of a
- * speed at rest, or no value. The first call derives them, as pc_system_new derives equations.
+ * column-major for o = pc_system_observable_count, so `length` is o*dim. Observables that
+ * contain accelerations or reactions change with these, and external forces with the state, as
+ * they do in pc_system_jacobian. An entry is not finite where its observable has no derivative,
+ * as that of a speed at rest, or no value. The first call derives them, as pc_system_new derives
+ * equations.
  */
 pc_status pc_system_observable_jacobian(const pc_system *system,
                                         double t,
@@ -2390,9 +2393,9 @@ pc_status pc_system_observable_jacobian(const pc_system *system,
 
 /**
  * Writes the derivatives ∂h/∂p of the observables at (t, y) by all parameters, o × p and
- * column-major for p = pc_system_parameter_count, at constant external forces. For an input with a
- * table it is the derivative by a shift of its values; a parameter that is an expression in others
- * counts as one by itself. Otherwise like pc_system_observable_jacobian; it needs no
+ * column-major for p = pc_system_parameter_count, at constant external forces. For an input with
+ * a table it is the derivative by a shift of its values; a parameter that is an expression in
+ * others counts as one by itself. Otherwise like pc_system_observable_jacobian; it needs no
  * pc_model_differentiate.
  */
 pc_status pc_system_observable_parameter_jacobian(const pc_system *system,
@@ -2408,20 +2411,21 @@ pc_status pc_system_observable_parameter_jacobian(const pc_system *system,
  *
  *   δẏ = A δy + B δu,   δh = C δy + D δu,
  *
- * where u are all external forces, in the order of pc_system_force_name, then the parameters with
- * the indices `inputs`, such as inputs of the model; h are the observables of pc_system_observe.
- * In contrast to pc_system_jacobian, A is the derivative at constant u: that of the open loop.
+ * where u are all external forces, in the order of pc_system_force_name, then the parameters
+ * with the indices `inputs`, such as inputs of the model; h are the observables of
+ * pc_system_observe. In contrast to pc_system_jacobian, A is the derivative at constant u: that
+ * of the open loop.
  *
- * `forces` are the values of the external forces, so that none needs to be set; NULL, of length 0,
- * for those of the function of pc_system_set_force. Parameters and inputs have their current
+ * `forces` are the values of the external forces, so that none needs to be set; NULL, of length
+ * 0, for those of the function of pc_system_set_force. Parameters and inputs have their current
  * values. The matrices are column-major, for dim = pc_system_dim, o = pc_system_observable_count
  * and m the number of components of u: `a` is dim × dim, `b` dim × m, `c` o × dim and `d` o × m.
- * Those that are NULL, of length 0, are left out. Entries of C and D may be not finite, as those of
- * pc_system_observable_jacobian.
+ * Those that are NULL, of length 0, are left out. Entries of C and D may be not finite, as those
+ * of pc_system_observable_jacobian.
  *
- * Where constraints hold, the deviations δy of motions are those that satisfy them to first order;
- * pc_system_linearization has the equations in independent components. The first call derives
- * the matrices, as pc_system_new derives equations.
+ * Where constraints hold, the deviations δy of motions are those that satisfy them to first
+ * order; pc_system_linearization has the equations in independent components. The first call
+ * derives the matrices, as pc_system_new derives equations.
  */
 pc_status pc_system_linearize(const pc_system *system,
                               double t,
@@ -2447,16 +2451,17 @@ pc_status pc_system_linearize(const pc_system *system,
  * of the states that satisfy the constraints as many are kept as are independent there; a steady
  * motion is described without its cyclic coordinates, whose rates are constant.
  *
- * Newton's method holds the components with the indices `held` at their values in y, to choose one
- * of a family of steady motions; it does not leave the states that motions reach from y. External
- * forces are constant, with the values `forces`; NULL, of length 0, for those that the function
- * of pc_system_set_force has at (t, y). `inputs` are the indices of parameters that are inputs;
- * all external forces are. The system has to be in quasi-velocities of the model (PC_POINCARE).
- * The first call, and one with other inputs, derives equations, as pc_system_new does.
+ * Newton's method holds the components with the indices `held` at their values in y, to choose
+ * one of a family of steady motions; it does not leave the states that motions reach from y.
+ * External forces are constant, with the values `forces`; NULL, of length 0, for those that the
+ * function of pc_system_set_force has at (t, y). `inputs` are the indices of parameters that are
+ * inputs; all external forces are. The system has to be in quasi-velocities of the model
+ * (PC_POINCARE). The first call, and one with other inputs, derives equations, as pc_system_new
+ * does.
  *
- * Returns PC_EVALUATION where no steady state is found, or the rates have no derivatives there, and
- * PC_UNSUPPORTED where steady states are sought for equations that depend on time, and for other
- * forms of the equations.
+ * Returns PC_EVALUATION where no steady state is found, or the rates have no derivatives there,
+ * and PC_UNSUPPORTED where steady states are sought for equations that depend on time, and for
+ * other forms of the equations.
  */
 pc_status pc_system_linearization(const pc_system *system,
                                   int about,
@@ -2484,8 +2489,8 @@ size_t pc_linearization_count(const pc_linearization *linearization, int part);
 const char *pc_linearization_name(const pc_linearization *linearization, int part, size_t index);
 
 /**
- * Returns 1 if the state is steady: all rates vanish but those of cyclic coordinates; else 0, and
- * 0 for NULL.
+ * Returns 1 if the state is steady: all rates vanish but those of cyclic coordinates; else 0,
+ * and 0 for NULL.
  */
 int pc_linearization_is_steady(const pc_linearization *linearization);
 
@@ -2499,8 +2504,8 @@ pc_status pc_linearization_state(const pc_linearization *linearization,
                                  pc_error **error);
 
 /**
- * Writes a matrix, a pc_linear_matrix, column-major; pc_linearization_count gives the numbers of its
- * rows and columns.
+ * Writes a matrix, a pc_linear_matrix, column-major; pc_linearization_count gives the numbers of
+ * its rows and columns.
  */
 pc_status pc_linearization_matrix(const pc_linearization *linearization,
                                   int matrix,
@@ -2779,9 +2784,9 @@ pc_status pc_solver_state(const pc_solver *solver, double *y, size_t y_length, p
 /**
  * Puts a solver at the state y and the time t, as a new solver would be that pc_solver_new makes
  * with the same options: the method, the statistics, the counts of events and the integrals that
- * are kept begin anew, and either direction of time may follow. Events that were added, observers,
- * sensitivities with their starts, and the parameters that the solver has, stay. After a failure
- * the solver is as it was.
+ * are kept begin anew, and either direction of time may follow. Events that were added,
+ * observers, sensitivities with their starts, and the parameters that the solver has, stay.
+ * After a failure the solver is as it was.
  */
 pc_status pc_solver_reset(pc_solver *solver,
                           double t,
@@ -2791,11 +2796,11 @@ pc_status pc_solver_reset(pc_solver *solver,
 
 /**
  * Sets the function that is called after each internal step from now on, in all calls that
- * integrate, on their thread, in place of the previous one; NULL for none. It follows the work of
- * the method, shows progress, or stops the integration; it does not change the steps. `destroy`,
- * unless NULL, is called with `user` exactly once: by this call if it fails or `monitor` is NULL,
- * else when another monitor takes its place or the solver is freed. `destroy` must not use the
- * solver while the solver is being freed.
+ * integrate, on their thread, in place of the previous one; NULL for none. It follows the work
+ * of the method, shows progress, or stops the integration; it does not change the steps.
+ * `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails or
+ * `monitor` is NULL, else when another monitor takes its place or the solver is freed. `destroy`
+ * must not use the solver while the solver is being freed.
  */
 pc_status pc_solver_set_monitor(pc_solver *solver,
                                 pc_monitor monitor,
@@ -2804,9 +2809,9 @@ pc_status pc_solver_set_monitor(pc_solver *solver,
                                 pc_error **error);
 
 /**
- * Writes what the error test of the last internal step compared, at its end: the weights
- * 1/(rtol |y_i| + atol_i) of the components, and the estimated local errors e_i. A step is accepted
- * if the root mean square of the products is at most 1. Each of the two arrays has the length of
+ * Writes what the error test of the last internal step compared, at its end: the weights 1/(rtol
+ * |y_i| + atol_i) of the components, and the estimated local errors e_i. A step is accepted if
+ * the root mean square of the products is at most 1. Each of the two arrays has the length of
  * the state; one that is NULL, of length 0, is left out. PC_ADAMS, PC_BDF and the BDF steps of
  * PC_AUTO have estimates of each component; for other steps the errors are refused with
  * PC_UNSUPPORTED. Before the first step they are refused with PC_INVALID_ARGUMENT.
@@ -3084,14 +3089,14 @@ pc_status pc_ensemble_run(const pc_system *system,
                           pc_error **error);
 
 /**
- * Writes the largest Lyapunov exponents of the motion from the state y at the time t, in units of
- * inverse time and in descending order as far as they have converged; `exponents_length` is their
- * number, from 1 to the length of the state. As many deviations are integrated with the motion and
- * are made orthonormal again after each interval of time; the exponents are their mean rates of
- * growth over `intervals` intervals, after the first `transient` of them, which do not count. The
- * interval should be so short that its product with the difference of the exponents is below 10.
- * `options` may be NULL. Events of the model are not followed. Takes as long as an integration over
- * all intervals; PC_LIMIT as for a solver.
+ * Writes the largest Lyapunov exponents of the motion from the state y at the time t, in units
+ * of inverse time and in descending order as far as they have converged; `exponents_length` is
+ * their number, from 1 to the length of the state. As many deviations are integrated with the
+ * motion and are made orthonormal again after each interval of time; the exponents are their
+ * mean rates of growth over `intervals` intervals, after the first `transient` of them, which do
+ * not count. The interval should be so short that its product with the difference of the
+ * exponents is below 10. `options` may be NULL. Events of the model are not followed. Takes as
+ * long as an integration over all intervals; PC_LIMIT as for a solver.
  */
 pc_status pc_system_lyapunov(const pc_system *system,
                              const pc_solver_options *options,
@@ -3108,11 +3113,11 @@ pc_status pc_system_lyapunov(const pc_system *system,
 /**
  * Writes the value of G = h(t_end) + ∫ g dt along the motion from the state y at the time t, and
  * its derivatives by this state, ∂G/∂y_i with the other components held fixed, and by all
- * parameters, ∂G/∂p_j for a start that does not depend on them; to what they are for a start that
- * does, pc_system_start_by_parameter adds Σ ∂y_i/∂p_j ∂G/∂y_i.
+ * parameters, ∂G/∂p_j for a start that does not depend on them; to what they are for a start
+ * that does, pc_system_start_by_parameter adds Σ ∂y_i/∂p_j ∂G/∂y_i.
  *
- * h and g are observables, given by their indices `end` and `density`; SIZE_MAX stands for 0. The
- * motion is integrated forwards and the adjoint equations backwards, once each however many
+ * h and g are observables, given by their indices `end` and `density`; SIZE_MAX stands for 0.
+ * The motion is integrated forwards and the adjoint equations backwards, once each however many
  * parameters there are, by PC_BDF if `options`, which may be NULL, say so, else by PC_ADAMS. The
  * derivatives are continued across the events of the model. `by_parameters` needs
  * pc_model_differentiate; it may be NULL, of length 0. The first call derives the derivatives of

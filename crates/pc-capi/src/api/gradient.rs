@@ -15,14 +15,14 @@ use crate::machinery::motion_field::MotionField;
 use crate::machinery::slopes::{Forces, add_through_forces};
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
-/// Writes the largest Lyapunov exponents of the motion from the state y at the time t, in units of
-/// inverse time and in descending order as far as they have converged; `exponents_length` is their
-/// number, from 1 to the length of the state. As many deviations are integrated with the motion and
-/// are made orthonormal again after each interval of time; the exponents are their mean rates of
-/// growth over `intervals` intervals, after the first `transient` of them, which do not count. The
-/// interval should be so short that its product with the difference of the exponents is below 10.
-/// `options` may be NULL. Events of the model are not followed. Takes as long as an integration over
-/// all intervals; PC_LIMIT as for a solver.
+/// Writes the largest Lyapunov exponents of the motion from the state y at the time t, in units
+/// of inverse time and in descending order as far as they have converged; `exponents_length` is
+/// their number, from 1 to the length of the state. As many deviations are integrated with the
+/// motion and are made orthonormal again after each interval of time; the exponents are their
+/// mean rates of growth over `intervals` intervals, after the first `transient` of them, which do
+/// not count. The interval should be so short that its product with the difference of the
+/// exponents is below 10. `options` may be NULL. Events of the model are not followed. Takes as
+/// long as an integration over all intervals; PC_LIMIT as for a solver.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_lyapunov(
     system: *const pc_system,
@@ -59,11 +59,11 @@ pub unsafe extern "C" fn pc_system_lyapunov(
 
 /// Writes the value of G = h(t_end) + ∫ g dt along the motion from the state y at the time t, and
 /// its derivatives by this state, ∂G/∂y_i with the other components held fixed, and by all
-/// parameters, ∂G/∂p_j for a start that does not depend on them; to what they are for a start that
-/// does, pc_system_start_by_parameter adds Σ ∂y_i/∂p_j ∂G/∂y_i.
+/// parameters, ∂G/∂p_j for a start that does not depend on them; to what they are for a start
+/// that does, pc_system_start_by_parameter adds Σ ∂y_i/∂p_j ∂G/∂y_i.
 ///
-/// h and g are observables, given by their indices `end` and `density`; SIZE_MAX stands for 0. The
-/// motion is integrated forwards and the adjoint equations backwards, once each however many
+/// h and g are observables, given by their indices `end` and `density`; SIZE_MAX stands for 0.
+/// The motion is integrated forwards and the adjoint equations backwards, once each however many
 /// parameters there are, by PC_BDF if `options`, which may be NULL, say so, else by PC_ADAMS. The
 /// derivatives are continued across the events of the model. `by_parameters` needs
 /// pc_model_differentiate; it may be NULL, of length 0. The first call derives the derivatives of

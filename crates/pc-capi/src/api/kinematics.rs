@@ -210,7 +210,10 @@ impl Inner {
             }
         };
         let map = &mut bodies[place].1;
-        map.parameters_mut().copy_from_slice(field.inputs(t, y)?);
+        // Velocities contain no external forces, so that no function is asked for them.
+        let (parameters, forces) = map.parameters_mut().split_at_mut(field.parameters().len());
+        field.parameters_at(t, parameters)?;
+        forces.fill(0.0);
         map.arguments_mut().copy_from_slice(point);
         Ok((map, &room.state))
     }

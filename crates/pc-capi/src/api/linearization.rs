@@ -14,8 +14,8 @@ use crate::ffi::strings::{c_strings, nth};
 use crate::machinery::linear::{About, Linear};
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
-/// The linear equations near a state, δẋ = A δx + B δu, δh = C δx + D δu, in independent components
-/// x of the states that satisfy the constraints. It never changes. Free it with
+/// The linear equations near a state, δẋ = A δx + B δu, δh = C δx + D δu, in independent
+/// components x of the states that satisfy the constraints. It never changes. Free it with
 /// pc_linearization_free.
 pub struct pc_linearization {
     found: Linearization,
@@ -68,16 +68,17 @@ pub enum pc_linear_matrix {
 /// of the states that satisfy the constraints as many are kept as are independent there; a steady
 /// motion is described without its cyclic coordinates, whose rates are constant.
 ///
-/// Newton's method holds the components with the indices `held` at their values in y, to choose one
-/// of a family of steady motions; it does not leave the states that motions reach from y. External
-/// forces are constant, with the values `forces`; NULL, of length 0, for those that the function
-/// of pc_system_set_force has at (t, y). `inputs` are the indices of parameters that are inputs;
-/// all external forces are. The system has to be in quasi-velocities of the model (PC_POINCARE).
-/// The first call, and one with other inputs, derives equations, as pc_system_new does.
+/// Newton's method holds the components with the indices `held` at their values in y, to choose
+/// one of a family of steady motions; it does not leave the states that motions reach from y.
+/// External forces are constant, with the values `forces`; NULL, of length 0, for those that the
+/// function of pc_system_set_force has at (t, y). `inputs` are the indices of parameters that are
+/// inputs; all external forces are. The system has to be in quasi-velocities of the model
+/// (PC_POINCARE). The first call, and one with other inputs, derives equations, as pc_system_new
+/// does.
 ///
-/// Returns PC_EVALUATION where no steady state is found, or the rates have no derivatives there, and
-/// PC_UNSUPPORTED where steady states are sought for equations that depend on time, and for other
-/// forms of the equations.
+/// Returns PC_EVALUATION where no steady state is found, or the rates have no derivatives there,
+/// and PC_UNSUPPORTED where steady states are sought for equations that depend on time, and for
+/// other forms of the equations.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_linearization(
     system: *const pc_system,
@@ -124,7 +125,9 @@ pub unsafe extern "C" fn pc_system_linearization(
         }
         inner.field.parameters_at(t, &mut values[..own])?;
         if !inner.linear.as_ref().is_some_and(|linear| linear.has(inputs)) {
-            let derive = || Ok(Box::new(Linear::of(inventory, inputs)?));
+            let derive = || {
+                inventory.derive(|model| Ok(Box::new(Linear::of(&model, &inventory.names, inputs)?)))
+            };
             inner.linear = Some(inventory.derivations.linear.get(&format!("{inputs:?}"), derive)?);
         }
         const MISSING: CallError =
@@ -182,8 +185,8 @@ pub extern "C" fn pc_linearization_name(
     linearization.map_or(std::ptr::null(), |linearization| nth(linearization.list(part), index))
 }
 
-/// Returns 1 if the state is steady: all rates vanish but those of cyclic coordinates; else 0, and
-/// 0 for NULL.
+/// Returns 1 if the state is steady: all rates vanish but those of cyclic coordinates; else 0,
+/// and 0 for NULL.
 #[unsafe(no_mangle)]
 pub extern "C" fn pc_linearization_is_steady(linearization: Option<&pc_linearization>) -> c_int {
     linearization.map_or(0, |linearization| linearization.found.is_steady.into())
@@ -209,8 +212,8 @@ pub unsafe extern "C" fn pc_linearization_state(
     unsafe { entry(error, read) }
 }
 
-/// Writes a matrix, a pc_linear_matrix, column-major; pc_linearization_count gives the numbers of its
-/// rows and columns.
+/// Writes a matrix, a pc_linear_matrix, column-major; pc_linearization_count gives the numbers of
+/// its rows and columns.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_linearization_matrix(
     linearization: *const pc_linearization,

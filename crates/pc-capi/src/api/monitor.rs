@@ -11,10 +11,11 @@ use crate::ffi::user_data::{User, pc_destroy};
 use crate::machinery::engine::Integration;
 use crate::machinery::watch::Monitor;
 
-/// Receives the end (t, y) of each internal step, or of the part of a step before an event, where y
-/// is the state before the event; the order of the method in this step, and the length of the step,
-/// with the sign of the direction. It may lie beyond the time to which the call integrates. Returns
-/// 0 to continue; anything else ends the call with PC_STOPPED. Otherwise it is like pc_observer.
+/// Receives the end (t, y) of each internal step, or of the part of a step before an event, where
+/// y is the state before the event; the order of the method in this step, and the length of the
+/// step, with the sign of the direction. It may lie beyond the time to which the call integrates.
+/// Returns 0 to continue; anything else ends the call with PC_STOPPED. Otherwise it is like
+/// pc_observer.
 pub type pc_monitor = Option<
     unsafe extern "C" fn(
         t: f64,
@@ -28,9 +29,9 @@ pub type pc_monitor = Option<
 
 /// Puts a solver at the state y and the time t, as a new solver would be that pc_solver_new makes
 /// with the same options: the method, the statistics, the counts of events and the integrals that
-/// are kept begin anew, and either direction of time may follow. Events that were added, observers,
-/// sensitivities with their starts, and the parameters that the solver has, stay. After a failure
-/// the solver is as it was.
+/// are kept begin anew, and either direction of time may follow. Events that were added,
+/// observers, sensitivities with their starts, and the parameters that the solver has, stay.
+/// After a failure the solver is as it was.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_reset(
     solver: *mut pc_solver,
@@ -49,11 +50,11 @@ pub unsafe extern "C" fn pc_solver_reset(
 }
 
 /// Sets the function that is called after each internal step from now on, in all calls that
-/// integrate, on their thread, in place of the previous one; NULL for none. It follows the work of
-/// the method, shows progress, or stops the integration; it does not change the steps. `destroy`,
-/// unless NULL, is called with `user` exactly once: by this call if it fails or `monitor` is NULL,
-/// else when another monitor takes its place or the solver is freed. `destroy` must not use the
-/// solver while the solver is being freed.
+/// integrate, on their thread, in place of the previous one; NULL for none. It follows the work
+/// of the method, shows progress, or stops the integration; it does not change the steps.
+/// `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails or
+/// `monitor` is NULL, else when another monitor takes its place or the solver is freed. `destroy`
+/// must not use the solver while the solver is being freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_solver_set_monitor(
     solver: *mut pc_solver,
@@ -75,9 +76,9 @@ pub unsafe extern "C" fn pc_solver_set_monitor(
     status
 }
 
-/// Writes what the error test of the last internal step compared, at its end: the weights
-/// 1/(rtol |y_i| + atol_i) of the components, and the estimated local errors e_i. A step is accepted
-/// if the root mean square of the products is at most 1. Each of the two arrays has the length of
+/// Writes what the error test of the last internal step compared, at its end: the weights 1/(rtol
+/// |y_i| + atol_i) of the components, and the estimated local errors e_i. A step is accepted if
+/// the root mean square of the products is at most 1. Each of the two arrays has the length of
 /// the state; one that is NULL, of length 0, is left out. PC_ADAMS, PC_BDF and the BDF steps of
 /// PC_AUTO have estimates of each component; for other steps the errors are refused with
 /// PC_UNSUPPORTED. Before the first step they are refused with PC_INVALID_ARGUMENT.

@@ -13,8 +13,9 @@ use crate::ffi::pointer::{apart, handle, room, text, write};
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::{c_string, nth};
 use crate::ffi::user_data::{User, pc_destroy};
-use crate::machinery::engine::{Integration, Observer};
+use crate::machinery::engine::Integration;
 use crate::machinery::event_set::Own;
+use crate::machinery::watch::Observer;
 
 /// Receives each event where it occurs, by its number among the events of the solver, with the
 /// states before and after it, which are valid during the call. Each of several simultaneous events

@@ -219,7 +219,7 @@ pub struct pc_solver_options {
     /// 1; 1e-5 by default.
     pub accumulation: f64,
     /// A pc_inequality for each component of the state, copied; NULL, the default, for none. They
-    /// hold at the ends of steps; a component that can not satisfy its inequality ends the
+    /// hold at the ends of steps; a component that cannot satisfy its inequality ends the
     /// integration. A start that does not satisfy them is refused, and so are inequalities with
     /// PC_TAYLOR, and for systems whose states are projected.
     pub inequalities: *const c_int,

@@ -22,8 +22,7 @@ struct OfPoint {
 impl OfPoint {
     /// The state, the name of the body, the point, and the array to be written.
     ///
-    /// # Safety
-    /// All pointers are as the preamble demands.
+    /// # Safety All pointers are as the preamble demands.
     unsafe fn read<'a>(
         &self,
         state: State,
@@ -50,11 +49,11 @@ impl OfPoint {
 /// Writes the pose of a body at (t, y): the position r of one of its points along fixed axes, 3
 /// numbers, followed by its rotation R, 3 × 3 and column-major, so `length` is 12. R takes
 /// components along the axes of the body to those along fixed axes, so that its columns are the
-/// axes of the body; a particle, and a point of the world, have the unit
-/// matrix. `body` and `point` are as in pc_system_body_jacobian, whose J η + a is the rate of r. The
-/// first call for a name derives the pose, as pc_system_new derives equations, for all points.
-/// Returns PC_NOT_FOUND where there is no such body, and PC_INVALID_MODEL where its angular velocity
-/// is given without a rotation.
+/// axes of the body; a particle, and a point of the world, have the unit matrix. `body` and
+/// `point` are as in pc_system_body_jacobian, whose J η + a is the rate of r. The first call for
+/// a name derives the pose, as pc_system_new derives equations, for all points. Returns
+/// PC_NOT_FOUND where there is no such body, and PC_INVALID_MODEL where its angular velocity is
+/// given without a rotation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_body_pose(
     system: *const pc_system,
@@ -94,10 +93,10 @@ pub unsafe extern "C" fn pc_system_body_pose(
     unsafe { inside(system, error, compute) }
 }
 
-/// Writes the acceleration that a point of a body has at (t, y) besides J η̇, and the same part of
-/// the angular acceleration of the body, along fixed axes: 6 numbers, (v̇, ω̇) − J η̇, which is J̇ η
-/// where nothing depends on t. It is the last column of pc_system_body_jacobian, without the
-/// others. With it η̇ = J⁺ (a − bias) gives the point the acceleration a. Otherwise like
+/// Writes the acceleration that a point of a body has at (t, y) besides J η̇, and the same part
+/// of the angular acceleration of the body, along fixed axes: 6 numbers, (v̇, ω̇) − J η̇, which
+/// is J̇ η where nothing depends on t. It is the last column of pc_system_body_jacobian, without
+/// the others. With it η̇ = J⁺ (a − bias) gives the point the acceleration a. Otherwise like
 /// pc_system_body_jacobian.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_body_bias(
@@ -125,8 +124,8 @@ pub unsafe extern "C" fn pc_system_body_bias(
 }
 
 /// Writes the generalised forces g, k numbers with k as in pc_system_mass_matrix, that hold the
-/// system at rest in the position of (t, y): tau of pc_system_inverse_dynamics for η = 0 and
-/// η̇ = 0, whatever the velocities of y are. They balance weight and springs, −X_s L at rest, and
+/// system at rest in the position of (t, y): tau of pc_system_inverse_dynamics for η = 0 and η̇ =
+/// 0, whatever the velocities of y are. They balance weight and springs, −X_s L at rest, and
 /// those forces of the model that act at rest; external forces of the program, which are not
 /// called, count as 0. The first call derives equations, as pc_system_new does.
 #[unsafe(no_mangle)]

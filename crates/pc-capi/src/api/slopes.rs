@@ -11,10 +11,11 @@ use crate::machinery::slopes::{Forces, add_through_forces};
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
 /// Writes the derivatives ∂h/∂y of the observables h of pc_system_observe at (t, y), o × dim and
-/// column-major for o = pc_system_observable_count, so `length` is o*dim. Observables that contain
-/// accelerations or reactions change with these, and external forces with the state, as they do in
-/// pc_system_jacobian. An entry is not finite where its observable has no derivative, as that of a
-/// speed at rest, or no value. The first call derives them, as pc_system_new derives equations.
+/// column-major for o = pc_system_observable_count, so `length` is o*dim. Observables that
+/// contain accelerations or reactions change with these, and external forces with the state, as
+/// they do in pc_system_jacobian. An entry is not finite where its observable has no derivative,
+/// as that of a speed at rest, or no value. The first call derives them, as pc_system_new derives
+/// equations.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_observable_jacobian(
     system: *const pc_system,
@@ -45,9 +46,9 @@ pub unsafe extern "C" fn pc_system_observable_jacobian(
 }
 
 /// Writes the derivatives ∂h/∂p of the observables at (t, y) by all parameters, o × p and
-/// column-major for p = pc_system_parameter_count, at constant external forces. For an input with a
-/// table it is the derivative by a shift of its values; a parameter that is an expression in others
-/// counts as one by itself. Otherwise like pc_system_observable_jacobian; it needs no
+/// column-major for p = pc_system_parameter_count, at constant external forces. For an input with
+/// a table it is the derivative by a shift of its values; a parameter that is an expression in
+/// others counts as one by itself. Otherwise like pc_system_observable_jacobian; it needs no
 /// pc_model_differentiate.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_observable_parameter_jacobian(
@@ -78,20 +79,21 @@ pub unsafe extern "C" fn pc_system_observable_parameter_jacobian(
 ///
 ///   δẏ = A δy + B δu,   δh = C δy + D δu,
 ///
-/// where u are all external forces, in the order of pc_system_force_name, then the parameters with
-/// the indices `inputs`, such as inputs of the model; h are the observables of pc_system_observe.
-/// In contrast to pc_system_jacobian, A is the derivative at constant u: that of the open loop.
+/// where u are all external forces, in the order of pc_system_force_name, then the parameters
+/// with the indices `inputs`, such as inputs of the model; h are the observables of
+/// pc_system_observe. In contrast to pc_system_jacobian, A is the derivative at constant u: that
+/// of the open loop.
 ///
-/// `forces` are the values of the external forces, so that none needs to be set; NULL, of length 0,
-/// for those of the function of pc_system_set_force. Parameters and inputs have their current
+/// `forces` are the values of the external forces, so that none needs to be set; NULL, of length
+/// 0, for those of the function of pc_system_set_force. Parameters and inputs have their current
 /// values. The matrices are column-major, for dim = pc_system_dim, o = pc_system_observable_count
 /// and m the number of components of u: `a` is dim × dim, `b` dim × m, `c` o × dim and `d` o × m.
-/// Those that are NULL, of length 0, are left out. Entries of C and D may be not finite, as those of
-/// pc_system_observable_jacobian.
+/// Those that are NULL, of length 0, are left out. Entries of C and D may be not finite, as those
+/// of pc_system_observable_jacobian.
 ///
-/// Where constraints hold, the deviations δy of motions are those that satisfy them to first order;
-/// pc_system_linearization has the equations in independent components. The first call derives
-/// the matrices, as pc_system_new derives equations.
+/// Where constraints hold, the deviations δy of motions are those that satisfy them to first
+/// order; pc_system_linearization has the equations in independent components. The first call
+/// derives the matrices, as pc_system_new derives equations.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_linearize(
     system: *const pc_system,
@@ -165,11 +167,12 @@ pub unsafe extern "C" fn pc_system_linearize(
     unsafe { inside(system, error, evaluate) }
 }
 
-/// An array that may be wanted: its address, its length, the length that it has to have, and its name.
+/// An array that may be wanted: its address, its length, the length that it has to have, and its
+/// name.
 type Wish = (*mut f64, usize, usize, &'static str);
 
-/// Refuses arrays to be written that share memory with each other or with those that are read; arrays of a wrong length
-/// are refused elsewhere.
+/// Refuses arrays to be written that share memory with each other or with those that are read;
+/// arrays of a wrong length are refused elsewhere.
 fn separate(wanted: &[Wish], read: &[(*const f64, usize, usize, &'static str)]) -> Result<(), CallError> {
     let fits = |&(_, length, expected, _): &(*const f64, usize, usize, &str)| length == expected;
     let mut known: Vec<_> = read.iter().copied().filter(fits).collect();
@@ -186,8 +189,7 @@ fn separate(wanted: &[Wish], read: &[(*const f64, usize, usize, &'static str)]) 
 
 /// The array, unless it is null.
 ///
-/// # Safety
-/// Null, or room for as many numbers as said, which nobody else uses during the call.
+/// # Safety Null, or room for as many numbers as said, which nobody else uses during the call.
 unsafe fn wish<'a>((data, length, expected, what): Wish) -> Result<Option<&'a mut [f64]>, CallError> {
     if data.is_null() && length == 0 {
         return Ok(None);

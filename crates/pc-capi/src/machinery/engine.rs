@@ -1,19 +1,17 @@
-//! An integration, with a record of its events.
+//! An integration, with its events.
 
-use std::ffi::c_void;
 use std::ops::ControlFlow;
 
 use pc_expr::{Event, Events};
 use pc_solve::{
-    Checkpoint, Chosen, DenseOutput, Ending, Occurrence, Options, Sensitivities, SolveError, Statistics,
-    Stepper, VectorField,
+    Checkpoint, Chosen, DenseOutput, Ending, Options, Sensitivities, SolveError, Statistics, Stepper,
+    VectorField,
 };
 
 use crate::ffi::call_error::CallError;
-use crate::ffi::user_data::User;
 use crate::machinery::event_set::{Followed, Own};
 use crate::machinery::motion_field::MotionField;
-use crate::machinery::watch::{Monitor, Watch};
+use crate::machinery::watch::{EventLog, Monitor, Watch};
 
 /// The integration, with its events.
 pub(crate) type Engine = Box<pc_solve::Integration<Chosen<MotionField>, Followed>>;
@@ -33,45 +31,6 @@ pub(crate) fn engine(
     }
     let begun = pc_solve::Integration::begin(field, from, options, sensitivities)?;
     Ok(Box::new(begun.with_events_of(events, from)?))
-}
-
-/// A solver's record of its events; its size does not depend on how often they occur.
-#[derive(Default)]
-pub(crate) struct EventLog {
-    /// How often each event has occurred.
-    pub(crate) counts: Vec<u64>,
-    /// The last occurrence of each event.
-    pub(crate) last: Vec<Option<Occurrence>>,
-    /// The terminal event that ended the last call.
-    pub(crate) terminal: Option<usize>,
-    pub(crate) observer: Option<Observer>,
-}
-
-/// The function that receives each occurrence.
-pub(crate) struct Observer {
-    pub(crate) function:
-        unsafe extern "C" fn(usize, f64, *const f64, *const f64, usize, *mut c_void) -> std::ffi::c_int,
-    pub(crate) user: User,
-}
-
-impl EventLog {
-    fn of(events: usize) -> EventLog {
-        EventLog { counts: vec![0; events], last: vec![None; events], ..EventLog::default() }
-    }
-
-    /// Counts an occurrence and passes it to the observer.
-    pub(crate) fn note(&mut self, occurrence: &Occurrence) -> ControlFlow<()> {
-        self.counts[occurrence.event] += 1;
-        self.last[occurrence.event] = Some(occurrence.clone());
-        let Some(Observer { function, user }) = &self.observer else { return ControlFlow::Continue(()) };
-        let Occurrence { event, time, state_before, state_after } = occurrence;
-        let (before, after) = (state_before.as_ptr(), state_after.as_ptr());
-        // SAFETY: a function of that type, as pc_solver_observe_events demands; both states are as long as said.
-        match unsafe { function(*event, *time, before, after, state_after.len(), user.data) } {
-            0 => ControlFlow::Continue(()),
-            _ => ControlFlow::Break(()),
-        }
-    }
 }
 
 /// The content of a solver.

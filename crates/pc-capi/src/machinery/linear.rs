@@ -1,5 +1,7 @@
 //! Linear equations near states that satisfy the constraints, in independent components.
 
+use std::ffi::CString;
+
 use ::pc_model::{Assembly, Model};
 use pc_analysis::{AnalysisError, CyclicCoordinates, Linearization, Linearizer, SteadyOptions};
 use pc_expr::Evaluator;
@@ -8,7 +10,6 @@ use pc_print::{LinearModel, integrals_of};
 
 use crate::ffi::call_error::CallError;
 use crate::machinery::mechanics::evaluate;
-use crate::machinery::system::Inventory;
 
 /// About which state the equations are linearised.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -45,8 +46,9 @@ enum Source {
 }
 
 impl Linear {
-    pub(crate) fn of(inventory: &Inventory, inputs: &[usize]) -> Result<Linear, CallError> {
-        inventory.derive(|model| model.derived(|assembly| Linear::new(inventory, &model, assembly, inputs)))
+    /// The linearizer of a model; `names` are those of the state of the system.
+    pub(crate) fn of(model: &Model, names: &[CString], inputs: &[usize]) -> Result<Linear, CallError> {
+        model.derived(|assembly| Linear::new(names, model, assembly, inputs))
     }
 
     /// Whether it was made for these inputs.
@@ -55,7 +57,7 @@ impl Linear {
     }
 
     fn new(
-        inventory: &Inventory,
+        state: &[CString],
         model: &Model,
         assembly: &Assembly<'_>,
         inputs: &[usize],
@@ -80,19 +82,18 @@ impl Linear {
         };
         let velocities = assembly.placed(equations.functions(&all, &[]))?;
         let known = linearizer.names();
-        let place = |name: &str| inventory.names.iter().position(|own| own.to_bytes() == name.as_bytes());
+        let place = |name: &str| state.iter().position(|own| own.to_bytes() == name.as_bytes());
         const OTHER: CallError = CallError::Unsupported {
             what: "a linearization in independent components",
             why: "the state has other variables than the model",
         };
         let places = known.iter().map(|name| place(name).ok_or(OTHER)).collect::<Result<_, _>>()?;
-        let source = |name: &std::ffi::CString| {
+        let source = |name: &CString| {
             let is_it = |other: &str| other.as_bytes() == name.to_bytes();
             let own = known.iter().position(|known| is_it(known)).map(Source::Own);
             own.or_else(|| whole.iter().position(|eta| is_it(&eta.to_string())).map(Source::Velocity))
         };
-        let sources =
-            inventory.names.iter().map(|name| source(name).ok_or(OTHER)).collect::<Result<_, _>>()?;
+        let sources = state.iter().map(|name| source(name).ok_or(OTHER)).collect::<Result<_, _>>()?;
         Ok(Linear { inputs: inputs.to_vec(), places, velocities, sources, linearizer })
     }
 

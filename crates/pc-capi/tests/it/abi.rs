@@ -40,7 +40,7 @@ fn members_have_the_offsets_of_the_interface() {
         pc_solver_options {
             size, method, iteration, linear_solver, max_order, relative_tolerance, absolute_tolerance, absolute_tolerances,
             absolute_tolerances_length, max_steps, initial_step, min_step, max_step, stop_time,
-            samples_per_step, reserved, accumulation,
+            samples_per_step, reserved, accumulation, inequalities, inequalities_length,
         }
         pc_statistics {
             steps, rhs_evaluations, jacobian_evaluations, error_test_failures, nonlinear_iterations, nonlinear_failures,

@@ -141,7 +141,8 @@ fn exponents_of_a_saddle_are_its_roots() {
     for (found, expected) in found.iter().zip([root - 0.25, -root - 0.25]) {
         assert!((found - expected).abs() < 1e-6, "{found} is not {expected}");
     }
-    assert_eq!(exponents(&system, &[0.0, 0.0], 1, 0.5).unwrap(), found[..1]);
+    let largest = exponents(&system, &[0.0, 0.0], 1, 0.5).unwrap();
+    assert!(largest.len() == 1 && (largest[0] - found[0]).abs() < 1e-9);
     for (count, interval) in [(0, 0.5), (3, 0.5), (1, -1.0), (1, f64::NAN)] {
         let refused = exponents(&system, &[0.0, 0.0], count, interval).unwrap_err();
         assert_eq!(refused.status, pc_status::PC_INVALID_ARGUMENT, "{}", refused.message);

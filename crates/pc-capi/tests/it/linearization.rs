@@ -114,7 +114,7 @@ fn a_pendulum_rests_where_its_torques_balance() {
     close(&rest.state(2), &[angle, 0.0]);
     assert!(rest.is_steady());
     assert_eq!(rest.names(PC_LINEAR_COMPONENTS), ["a", "a'"]);
-    assert_eq!(rest.names(PC_LINEAR_INPUTS), ["a", "u"]);
+    assert_eq!(rest.names(PC_LINEAR_INPUTS), ["a'", "u"]);
     assert_eq!(rest.names(PC_LINEAR_OUTPUTS), ["height", "push"]);
     let stiffness = 5.0 * angle.cos();
     close(&rest.matrix(PC_LINEAR_A, 4), &[0.0, -stiffness, 1.0, -0.5]);

@@ -149,8 +149,8 @@ fn a_monitor_follows_every_step_and_stops() {
         let known = steps.list.len();
         solver.step(9.0).0.unwrap(); // to the end of the step in which it is, or a new one
         steps.most = steps.list.len() + 2;
-        let (ended, t, _) = (solver.advance(5.0).0, steps.list.len(), ());
-        assert_eq!((ended, t), (Err(stopped()), steps.most));
+        let (ended, _) = solver.advance(5.0);
+        assert_eq!((ended, steps.list.len()), (Err(stopped()), steps.most));
         assert!(steps.list.len() > known);
         let mut now = 0.0;
         // SAFETY: a live solver and a place for the time.
@@ -169,7 +169,7 @@ fn a_monitor_follows_every_step_and_stops() {
         // SAFETY: a live solver; no function is set.
         call(|error| unsafe { pc_solver_set_monitor(solver.0, None, ptr::null_mut(), Some(destroy), error) })
             .unwrap();
-        assert!(DESTROYED.load(SeqCst) >= before + 1);
+        assert!(DESTROYED.load(SeqCst) > before);
         solver.advance(now + 1.5).0.unwrap();
         assert_eq!(steps.list.len(), followed);
     }

@@ -175,6 +175,20 @@ fn forces_at_rest_are_those_of_weight_and_springs() {
     }
 }
 
+/// A controller that sets the forces may ask for Jacobians before it has set any.
+#[test]
+fn velocities_need_no_forces() {
+    let (free, forced) =
+        (System::of("puma-560"), crate::laws::forced("puma-560", &["waist", "hand"], pc_form::PC_POINCARE));
+    let (t, y) = moving(&free);
+    for (function, length) in
+        [(pc_system_body_jacobian as OfBody, 48), (pc_system_body_bias, 6), (pc_system_body_pose, 12)]
+    {
+        let of = |system| of_body(system, function, (t, &y), ("hand", Some(&AT)), length).unwrap();
+        assert_eq!(of(&forced), of(&free));
+    }
+}
+
 /// Positions follow the curve of an input.
 #[test]
 fn poses_follow_inputs() {

@@ -420,6 +420,18 @@ impl<'a, 'g> Linearised<'a, 'g> {
         all
     }
 
+    /// A direction v in which some `symbols` of the system change, and the derivative ẏ′ along it.
+    pub(crate) fn product(
+        &self,
+        system: &FirstOrder<'g>,
+        symbols: &[Expr<'g>],
+    ) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
+        let v = system.fresh("δ", symbols);
+        let along: Vec<_> = symbols.iter().copied().zip(v.iter().copied()).collect();
+        let product = self.along(&along);
+        (v, product)
+    }
+
     /// The derivatives ∂ẏ/∂q for each symbol q in `symbols`, column by column.
     pub(crate) fn columns(&self, symbols: &[Expr<'g>]) -> Vec<SparseColumn<'g>> {
         symbols.iter().map(|&symbol| self.nonzero_along(&[(symbol, Expr::ONE)])).collect()

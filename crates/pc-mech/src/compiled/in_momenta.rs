@@ -8,7 +8,7 @@ use pc_expr::{
 };
 
 use crate::compiled::elimination::columns::derivative;
-use crate::compiled::elimination::observed::By;
+use crate::compiled::elimination::observed::{By, OF_OBSERVABLES};
 use crate::compiled::failure::check_finite;
 use crate::compiled::legendre_transform::LegendreTransform;
 use crate::compiled::motion::{InMomenta, Motion, Slopes};
@@ -451,9 +451,6 @@ impl InMomenta {
         Ok(())
     }
 }
-
-/// What is missing where the derivatives of observables were not compiled.
-pub(crate) const OF_OBSERVABLES: &str = "derivatives of observables";
 
 fn not_compiled(what: &'static str) -> Failure {
     Failure::fatal(MechError::Evaluation(EvaluationError::NotCompiled { what }))

@@ -301,11 +301,15 @@ fn derivatives_that_were_not_compiled_are_refused() {
         motion.sparse_jacobian(0.0, &y, &mut [0.0; 49]).unwrap_err(),
         motion.jvp(0.0, &y, &[0.0; 7], &mut [0.0; 7]).unwrap_err(),
         motion.parameter_jacobian(0.0, &y, &mut [0.0; 49]).unwrap_err(),
+        motion.observable_jacobian(0.0, &y, &mut [0.0; 7]).unwrap_err(),
+        motion.observable_parameter_jacobian(0.0, &y, &mut [0.0; 7]).unwrap_err(),
     ];
     let jacobian = "the motion was compiled without its Jacobian";
     let product = "the motion was compiled without its product with its Jacobian";
     let parameters = "the motion was compiled without its derivative by parameters";
-    for (error, message) in errors.iter().zip([jacobian, jacobian, product, parameters]) {
+    let observables = "the motion was compiled without its derivatives of observables";
+    let messages = [jacobian, jacobian, product, parameters, observables, observables];
+    for (error, message) in errors.iter().zip(messages) {
         assert!(!error.is_recoverable());
         assert_eq!(error.to_string(), message);
         assert!(matches!(
@@ -313,6 +317,34 @@ fn derivatives_that_were_not_compiled_are_refused() {
             Some(MechError::Evaluation(EvaluationError::NotCompiled { .. }))
         ));
     }
+}
+
+/// The energy, and an output that contains an acceleration: φ̈ = −(g/l) sin φ.
+#[test]
+fn the_derivatives_of_observables() {
+    let graph = Graph::new();
+    let [g, l] = graph.symbols(["g", "l"]);
+    let pendulum = System::builder(&graph)
+        .parameter(g, 10.0)
+        .parameter(l, 2.0)
+        .coordinates(["φ"])
+        .lagrangian(|_, x, v| l.square() * v[0].square() / 2.0 + g * l * x[0].cos())
+        .output("push", |_, _, _| l * graph.symbol("φ''"))
+        .output("speed", |_, _, v| v[0].square().sqrt())
+        .build()
+        .unwrap();
+    let options = CompileOptions::default().observable_jacobian(true);
+    let mut motion = pendulum.poincare().unwrap().compile_for(options).unwrap();
+    let (x, v): (f64, f64) = (0.4, 0.0);
+    let mut by_state = [0.0; 6];
+    motion.observable_jacobian(0.0, &[x, v], &mut by_state).unwrap();
+    assert_close(&by_state[..2], &[20.0 * x.sin(), -10.0 * x.cos()], ROUNDING, "by φ");
+    assert_close(&by_state[3..5], &[4.0 * v, 0.0], ROUNDING, "by φ'");
+    assert!(!by_state[5].is_finite(), "at rest a speed has no derivative");
+    let mut by_parameters = [0.0; 6];
+    motion.observable_parameter_jacobian(0.0, &[x, v], &mut by_parameters).unwrap();
+    let expected = [-2.0 * x.cos(), -x.sin(), 0.0, -10.0 * x.cos(), 0.0, 0.0];
+    assert_close(&by_parameters, &expected, ROUNDING, "by g and l");
 }
 
 /// The mass of the second body is a parameter: a pivot independent of the state.

@@ -5,10 +5,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::compiled::elimination::columns::{Columns, Storage};
 use crate::compiled::elimination::products::Products;
-use crate::compiled::elimination::symbolic::product_by;
 use crate::compiled::elimination::symbolic_ldl::Factors;
 use crate::compiled::first_order::{FirstOrder, Linearised};
 use crate::compiled::point::Point;
+
+/// What is missing where the derivatives of observables were not compiled.
+pub(crate) const OF_OBSERVABLES: &str = "derivatives of observables";
 
 /// By what the observables are differentiated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,7 +55,7 @@ impl ObservedSlopes {
                 let columns = (rows, linearised.columns(symbols));
                 return Ok(Slopes::Columns(Columns::new(graph, &inputs, columns, backend)?));
             }
-            let (v, product) = product_by(&observing, &linearised, symbols);
+            let (v, product) = linearised.product(&observing, symbols);
             let unknowns = (&system.unknowns[..], unknowns);
             Ok(Slopes::Products(Box::new(Products::new(graph, &inputs, unknowns, (&v, &product))?)))
         };

@@ -310,19 +310,7 @@ impl Unrolled {
 
 /// A direction v and the product (∂ẏ/∂y) v, by forward differentiation along v, without a Jacobian.
 fn product<'g>(system: &FirstOrder<'g>, linearised: &Linearised<'_, 'g>) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
-    product_by(system, linearised, &system.state)
-}
-
-/// A direction v of changes of some `symbols`, and the derivative of the rates along it.
-pub(crate) fn product_by<'g>(
-    system: &FirstOrder<'g>,
-    linearised: &Linearised<'_, 'g>,
-    symbols: &[Expr<'g>],
-) -> (Vec<Expr<'g>>, Vec<Expr<'g>>) {
-    let v = system.fresh("δ", symbols);
-    let along: Vec<_> = symbols.iter().copied().zip(v.iter().copied()).collect();
-    let product = linearised.along(&along);
-    (v, product)
+    linearised.product(system, &system.state)
 }
 
 /// A program for (∂ẏ/∂y) v as a function of the state (y, v).
