@@ -23,10 +23,10 @@
  * failure a new handle or text is NULL, and arrays for results may hold anything.
  *
  * Ownership. What a function named ..._new, ..._clone, pc_model_parse, pc_model_from_file,
- * pc_model_builtin, pc_solver_restore, pc_solver_run_dense or pc_system_linearization gives, you
- * free with the ..._free of its type; `char *` you free with pc_string_free, bytes with
- * pc_bytes_free; `const char *` belongs to the handle it came from and lives as long, or is
- * static. All ..._free allow NULL.
+ * pc_model_builtin, pc_code_load, pc_system_of_code, pc_solver_restore, pc_solver_run_dense or
+ * pc_system_linearization gives, you free with the ..._free of its type; `char *` you free with
+ * pc_string_free, bytes with pc_bytes_free; `const char *` belongs to the handle it came from and
+ * lives as long, or is static. All ..._free allow NULL.
  * Handles are independent: a model can be freed while its system lives, and a system while its
  * solvers and kernels do.
  *
@@ -404,8 +404,8 @@ typedef enum {
 typedef struct pc_cancel pc_cancel;
 
 /**
- * The equations of motion of a model, derived and compiled: what all its systems have in common. It never
- * changes, so any number of threads may use it. Free it with pc_code_free.
+ * The equations of motion of a model, derived and compiled: what all its systems have in common. It
+ * never changes, so any number of threads may use it. Free it with pc_code_free.
  */
 typedef struct pc_code pc_code;
 

@@ -126,7 +126,9 @@ impl SystemCore {
         let saved = saved.map(<[u8]>::to_vec);
         let derive = move || {
             deep(|| {
-                if let Some(Saved { derived, t_start, .. }) = saved.and_then(|saved| Saved::of(&model, variables, &saved)) {
+                if let Some(Saved { derived, t_start, .. }) =
+                    saved.and_then(|saved| Saved::of(&model, variables, &saved))
+                {
                     return Ok((model, derived, t_start));
                 }
                 let graph = model.graph();

@@ -120,7 +120,8 @@ fn claim(example: &str, arguments: &str, line: &str) -> Option<Claim> {
 /// Whether the source of an example has a line for the program.
 fn claims_something(example: &str) -> Result<bool, Error> {
     let examples = workspace_root().join("examples-c");
-    let mut paths = ["c", "cpp", "f90"].into_iter().map(|ending| examples.join(example).with_extension(ending));
+    let mut paths =
+        ["c", "cpp", "f90"].into_iter().map(|ending| examples.join(example).with_extension(ending));
     let Some(path) = paths.find(|path| path.exists()) else { return Ok(false) };
     let text = fs::read_to_string(&path);
     Ok(text.map_err(|source| Error::File { path: path.display().to_string(), source })?.contains("pc run "))

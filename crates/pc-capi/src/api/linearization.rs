@@ -125,9 +125,8 @@ pub unsafe extern "C" fn pc_system_linearization(
         }
         inner.field.parameters_at(t, &mut values[..own])?;
         if !inner.linear.as_ref().is_some_and(|linear| linear.has(inputs)) {
-            let derive = || {
-                inventory.derive(|model| Ok(Box::new(Linear::of(&model, &inventory.names, inputs)?)))
-            };
+            let derive =
+                || inventory.derive(|model| Ok(Box::new(Linear::of(&model, &inventory.names, inputs)?)));
             inner.linear = Some(inventory.derivations.linear.get(&format!("{inputs:?}"), derive)?);
         }
         const MISSING: CallError =

@@ -24,8 +24,10 @@ fn files(directory: &Path) -> Vec<PathBuf> {
 /// The summary without the computing time and the lines about comparisons.
 fn without(said: &str) -> Vec<&str> {
     let kept = said.lines().filter(|line| !line.starts_with("verified") && !line.starts_with("kept"));
-    kept.map(|line| if line.starts_with("work") { line.rsplit_once(", ").map_or(line, |(work, _)| work) } else { line })
-        .collect()
+    kept.map(|line| {
+        if line.starts_with("work") { line.rsplit_once(", ").map_or(line, |(work, _)| work) } else { line }
+    })
+    .collect()
 }
 
 #[test]

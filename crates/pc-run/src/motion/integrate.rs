@@ -81,7 +81,8 @@ impl Run {
                 remarks.iter().for_each(|remark| observer.remark(remark));
             }
             let plan = Plan::of(model, wishes)?;
-            let run = Integration { model, assembly: None, facts, flow, plan, besides, observer }.run(stream)?;
+            let run =
+                Integration { model, assembly: None, facts, flow, plan, besides, observer }.run(stream)?;
             return Ok(Run { verified_before: verified, ..run });
         }
         let graph = model.graph();
@@ -157,7 +158,8 @@ fn integrated(
     let kept = cache
         .filter(|_| plan.sensitivities.is_empty())
         .map(|cache| (cache, Derived { flow: flow.clone(), prototype: None, facts: facts.clone() }));
-    let run = Integration { model, assembly: Some(assembly), facts, flow, plan, besides, observer }.run(stream)?;
+    let run =
+        Integration { model, assembly: Some(assembly), facts, flow, plan, besides, observer }.run(stream)?;
     if let (Some((cache, derived)), Some(verification)) = (kept, &run.verification) {
         let verified = verification.lines();
         cache.keep(model, form, &Kept { derived, remarks, verified }, observer);
