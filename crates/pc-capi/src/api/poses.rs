@@ -11,6 +11,14 @@ use crate::machinery::kinematics;
 use crate::machinery::mechanics::evaluate;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
 
+/// The state, the name of the body, the point, and the array to be written.
+struct Read<'a> {
+    y: &'a [f64],
+    body: &'a str,
+    point: &'a [f64],
+    written: &'a mut [f64],
+}
+
 /// The point of a body from C, and where to write what is known of it.
 struct OfPoint {
     body: *const c_char,
@@ -20,14 +28,10 @@ struct OfPoint {
 }
 
 impl OfPoint {
-    /// The state, the name of the body, the point, and the array to be written.
+    /// What was given, checked.
     ///
     /// # Safety All pointers are as the preamble demands.
-    unsafe fn read<'a>(
-        &self,
-        state: State,
-        dim: usize,
-    ) -> Result<(&'a [f64], &'a str, &'a [f64], &'a mut [f64]), CallError> {
+    unsafe fn read<'a>(&self, state: State, dim: usize) -> Result<Read<'a>, CallError> {
         let Target { data, length, expected, what } = self.target;
         let given = !(self.point.is_null() && self.point_length == 0);
         if given && self.point_length == 3 && length == expected {
@@ -42,7 +46,7 @@ impl OfPoint {
         let body = unsafe { text(self.body, "body") }?;
         // SAFETY: as promised.
         let (y, written) = unsafe { slices(state, dim, self.target) }?;
-        Ok((y, body, point, written))
+        Ok(Read { y, body, point, written })
     }
 }
 
@@ -71,7 +75,8 @@ pub unsafe extern "C" fn pc_system_body_pose(
         let target = Target { data: pose, length, expected: 12, what: "pose" };
         let given = OfPoint { body, point, point_length, target };
         // SAFETY: as the preamble demands.
-        let (y, body, point, pose) = unsafe { given.read(State { y, length: y_length }, inventory.dim()) }?;
+        let Read { y, body, point, written: pose } =
+            unsafe { given.read(State { y, length: y_length }, inventory.dim()) }?;
         inner.read_quasi_velocities(inventory, t, y)?;
         let Inner { poses, field, room, .. } = inner;
         let place = match poses.iter().position(|(name, _)| name == body) {
@@ -115,7 +120,8 @@ pub unsafe extern "C" fn pc_system_body_bias(
         let target = Target { data: bias, length, expected: 6, what: "bias" };
         let given = OfPoint { body, point, point_length, target };
         // SAFETY: as the preamble demands.
-        let (y, body, point, bias) = unsafe { given.read(State { y, length: y_length }, inventory.dim()) }?;
+        let Read { y, body, point, written: bias } =
+            unsafe { given.read(State { y, length: y_length }, inventory.dim()) }?;
         let (map, state) = inner.of_body(inventory, (t, y), body, point)?;
         Ok(map.rates(t, state, bias)?)
     };

@@ -58,7 +58,7 @@ impl Linear {
 }
 
 /// What is given besides the state.
-#[derive(Default)]
+#[derive(Clone, Copy, Default)]
 struct Given<'a> {
     held: &'a [usize],
     forces: Option<&'a [f64]>,

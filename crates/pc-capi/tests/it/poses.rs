@@ -211,7 +211,7 @@ fn what_does_not_exist_is_refused() {
     let system = System::of("puma-560");
     let (t, y) = system.start();
     for function in [pc_system_body_pose as OfBody, pc_system_body_bias] {
-        let length = if std::ptr::fn_addr_eq(function, pc_system_body_pose as OfBody) { 12 } else { 6 };
+        let length = if ptr::fn_addr_eq(function, pc_system_body_pose as OfBody) { 12 } else { 6 };
         let of = |body, at: Option<&[f64]>, length| of_body(&system, function, (t, &y), (body, at), length);
         let refused = of("foot", None, length).unwrap_err();
         assert_eq!(refused.status, pc_status::PC_NOT_FOUND);

@@ -296,7 +296,7 @@ impl Handles {
                 }
                 17 => {
                     let few = pc_solver_options { max_steps: 200, ..Default::default() };
-                    let end = if index % 2 == 0 { 0 } else { usize::MAX };
+                    let end = if index.is_multiple_of(2) { 0 } else { usize::MAX };
                     pc_system_gradient(
                         system,
                         &raw const few,
