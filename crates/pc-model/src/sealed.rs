@@ -63,7 +63,7 @@ pub enum SealError {
 /// [`SealError::Unreadable`] for contents that cannot be written, such as sequences of unknown length.
 pub fn seal<T: Serialize>(kind: &'static str, contents: &T) -> Result<Vec<u8>, SealError> {
     let mut bytes = [MAGIC.as_slice(), &LAYOUT.to_le_bytes(), &[0; CONTENTS - HASH]].concat();
-    bytes.extend(postcard::to_stdvec(&(kind, contents)).map_err(unreadable)?);
+    bytes.extend(postcard::to_stdvec(&(kind, contents)).map_err(|error| unreadable(&error))?);
     let hash = Sha256::digest(&bytes[CONTENTS..]);
     bytes[HASH..CONTENTS].copy_from_slice(&hash);
     Ok(bytes)
@@ -84,11 +84,11 @@ pub fn open<T: DeserializeOwned>(kind: &'static str, bytes: &[u8]) -> Result<T, 
     if Sha256::digest(contents).as_slice() != hash {
         return Err(SealError::Damaged);
     }
-    let (found, contents): (String, _) = postcard::take_from_bytes(contents).map_err(unreadable)?;
+    let (found, contents): (String, _) = postcard::take_from_bytes(contents).map_err(|error| unreadable(&error))?;
     if found != kind {
         return Err(SealError::Kind { found, expected: kind });
     }
-    postcard::from_bytes(contents).map_err(unreadable)
+    postcard::from_bytes(contents).map_err(|error| unreadable(&error))
 }
 
 /// The SHA-256 of contents of this kind in hexadecimal digits, with the layout: a name for what is derived from them.
@@ -100,7 +100,7 @@ pub fn name_of<T: Serialize>(kind: &'static str, contents: &T) -> Result<String,
     Ok(sealed[HASH..CONTENTS].iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-fn unreadable(error: postcard::Error) -> SealError {
+fn unreadable(error: &postcard::Error) -> SealError {
     SealError::Unreadable { reason: error.to_string() }
 }
 

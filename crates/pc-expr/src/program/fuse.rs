@@ -179,7 +179,8 @@ mod tests {
         for (p, o) in plain.iter().zip(&once) {
             assert!((p - o).abs() <= 1e-15 * p.abs().max(1.0));
         }
-        let counts: Vec<_> = program.cost().iter().collect();
+        let cost = program.cost();
+        let counts: Vec<_> = cost.iter().collect();
         assert_eq!(counts, [("fma", 2), ("mul", 2), ("neg", 1), ("sin", 1)]);
     }
 }

@@ -111,7 +111,7 @@ fn exact_options_give_the_interpreters_bits() {
         let program = random_program(&mut random, 20 + 12 * (round % 20), false);
         // A fused program rounds once in both kernels, too.
         for program in [program.clone(), program.fused()] {
-            seen.extend(program.cost().iter().map(|(kind, _)| kind));
+            seen.extend(program.cost().iter().map(|(kind, _)| kind.to_owned()));
             let mut interpreter = Interpreter::new(Arc::new(program.clone()));
             let registers = [0, 1, 4, 14, u32::MAX][round % 5];
             let options = JitOptions { registers, ..EXACT };
