@@ -67,7 +67,7 @@ fn caller(function: &Function, arguments: &[Argument]) -> String {
             if argument.kind.member() == "function" { format!("({}){value}", parameter.kind) } else { value }
         });
     let call = format!("{}({})", function.name, values.collect::<Vec<_>>().join(", "));
-    let statement = match result(&function.result).1 {
+    let statement = match result(function).1 {
         "" => format!("(void)r;\n    {call}"),
         "pointer" => format!("r->pointer = (void *){call}"),
         member => format!("r->{member} = {call}"),
@@ -80,9 +80,11 @@ fn caller(function: &Function, arguments: &[Argument]) -> String {
 }
 
 /// The kind of a result, and the member of `union value` for it.
-fn result(kind: &str) -> (&'static str, &'static str) {
-    match kind {
-        "pc_status" => ("STATUS", "choice"),
+fn result(function: &Function) -> (&'static str, &'static str) {
+    let fails = function.parameters.iter().any(|parameter| parameter.kind == "pc_error **");
+    match function.result.as_str() {
+        "pc_status" if fails => ("STATUS", "choice"),
+        "pc_status" => ("WHOLE", "choice"),
         "const char *" => ("NAME", "pointer"),
         "size_t" => ("SOME", "count"),
         "int" => ("WHOLE", "choice"),
@@ -99,7 +101,7 @@ fn entry(function: &Function, arguments: &[Argument], interface: &Interface) -> 
     let (null, kept) = (says("NULL") | says("null"), says("does nothing when called from"));
     let infinite = usize::from(NOT_FINITE.iter().any(|text| function.text.contains(text)));
     let counted = counted(function, interface).map_or("-1".to_owned(), |place| place.to_string());
-    let mut text = format!("    {{ \"{name}\", {}, {}, {{\n", result(&function.result).0, arguments.len());
+    let mut text = format!("    {{ \"{name}\", {}, {}, {{\n", result(function).0, arguments.len());
     for (argument, parameter) in arguments.iter().zip(&function.parameters) {
         let (length, fixed, power) = match argument.extent {
             Extent::Given(place) => (place.to_string(), 0, 0),

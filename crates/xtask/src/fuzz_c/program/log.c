@@ -179,7 +179,6 @@ void log_sequence(uint64_t number)
     char *colon = strrchr(place, ':');
     snprintf(colon, (size_t)(place + sizeof place - colon), ":%llu", (unsigned long long)number);
     next_line = 0;
-    fallen = false;
 }
 
 size_t log_begin(int depth_of_call)

@@ -154,6 +154,7 @@ static void play(uint64_t seed, uint64_t number)
 static void play_checked(uint64_t seed, uint64_t number)
 {
     long left = 1;
+    fallen = false;
     for (int times = 0; times < AGAIN && left > 0 && !fallen; times++) {
         const long before = live_blocks();
         play(seed, number);

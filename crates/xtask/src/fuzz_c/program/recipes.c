@@ -185,10 +185,12 @@ const char *const recipes[] = {
     "pc_solver_advance 0.5",
     "pc_model_new geared\n"
     "pc_model_add_jointed_body arm - screw\n"
+    "pc_model_set_joint_axis arm [0 0 1]\n"
     "pc_model_set_joint_pitch arm 0.1\n"
     "pc_model_set_body_mass arm 1\n"
     "pc_model_set_body_inertia arm [0.1 0.1 0.1]\n"
     "pc_model_add_jointed_body link - revolute\n"
+    "pc_model_set_joint_axis link [0 0 1]\n"
     "pc_model_set_joint_rotation link [1 0 0 0 1 0 0 0 1]\n"
     "pc_model_set_body_mass link 1\n"
     "pc_model_set_body_inertia link [0.1 0.1 0.1]\n"
