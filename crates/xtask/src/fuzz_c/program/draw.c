@@ -310,8 +310,10 @@ static size_t length_of(struct call *call, int argument, bool *null)
     const bool has_length = is->length >= 0 && is->power == 0;
     *null = false;
     if (has_length && call->length_set[is->length]) {
-        *null = is->kind == NUMBERS && call->function->null && chance(15);
-        return call->a[is->length].count;
+        /* Another array of this length may be null, with any length. */
+        const size_t shared = call->a[is->length].count;
+        *null = shared > MOST_TEXTS || (is->kind == NUMBERS && call->function->null && chance(15));
+        return shared;
     }
     size_t length = expected_length(call, argument);
     if (is->kind != ROOM && has_length && call->function->null && chance(20)) {
@@ -327,7 +329,7 @@ static size_t length_of(struct call *call, int argument, bool *null)
             length = near[below(4)];
         }
     }
-    if (!*null && length * (is->of > 0 ? (size_t)is->of : 1) > ROOM_BYTES - PAGE) {
+    if (!*null && length > (ROOM_BYTES - PAGE) / (is->of > 0 ? (size_t)is->of : 1)) {
         length = 3;
     }
     if (has_length) {
