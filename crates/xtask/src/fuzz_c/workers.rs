@@ -117,7 +117,10 @@ impl Counts {
             wrong.push(format!("never called: {}", uncalled.join(", ")));
         }
         if self.calls >= ENOUGH && !unsuccessful.is_empty() {
-            wrong.push(format!("never successful: {}", unsuccessful.join(", ")));
+            wrong.push(format!(
+                "never successful: {}: right calls of them belong into program/recipes.c",
+                unsuccessful.join(", ")
+            ));
         }
         if self.calls >= ENOUGH && self.succeeded * 100 < self.calls * LEAST {
             wrong.push(format!(
@@ -300,7 +303,13 @@ mod tests {
         let few = counts(100, vec![[100, 50, 0, 0], [0, 0, 0, 0]]);
         assert_eq!(few.wrong(&names), [""; 0]);
         let many = counts(ENOUGH, vec![[ENOUGH, 0, 0, 0], [0, 0, 0, 0]]);
-        assert_eq!(many.wrong(&names), ["never called: pc_b", "never successful: pc_a, pc_b"]);
+        assert_eq!(
+            many.wrong(&names),
+            [
+                "never called: pc_b",
+                "never successful: pc_a, pc_b: right calls of them belong into program/recipes.c"
+            ]
+        );
         let fallen = Counts { falls: 2, succeeded: 0, ..counts(ENOUGH, vec![[1, 1, 0, 0], [1, 1, 0, 0]]) };
         assert_eq!(fallen.wrong(&names).len(), 2);
         assert_eq!(fallen.wrong(&names)[0], "2 falls");

@@ -236,18 +236,26 @@ static void take_results(const struct call *call, int status, char *message, siz
     }
 }
 
+static bool is_moderate_number(double number)
+{
+    return number == 0.0 || (fabs(number) > 1e-60 && fabs(number) < 1e60);
+}
+
 /* Whether all numbers that a call is given are of a size at which results can be finite. */
 static bool is_moderate(const struct call *call)
 {
+    if (call->first && !is_moderate_number(call->first->span)) {
+        return false;
+    }
     for (int i = 0; i < call->function->count; i++) {
         const struct argument *is = &call->function->arguments[i];
-        if (is->kind == NUMBER && !(fabs(call->a[i].number) < 1e60)) {
+        if (is->kind == NUMBER && !is_moderate_number(call->a[i].number)) {
             return false;
         }
         for (size_t at = 0; is->real && (is->kind == NUMBERS || is->kind == ROOM) && call->a[i].pointer && at < call->lengths[i]; at++) {
             double number;
             memcpy(&number, (char *)call->a[i].pointer + at * sizeof number, sizeof number);
-            if (!(fabs(number) < 1e60)) {
+            if (!is_moderate_number(number)) {
                 return false;
             }
         }
@@ -451,6 +459,9 @@ static enum outcome perform(struct call *call, size_t mark, char *message, size_
     log_show(line);
     if (call->overlaps && succeeded) {
         fall("%s takes arrays that overlap", function->name);
+    }
+    if (call->damaged && succeeded) {
+        fall("%s takes bytes that were changed", function->name);
     }
     for (int i = 0; i < function->count; i++) {
         struct entry *entry = call->entries[i];

@@ -466,14 +466,18 @@ static void draw_bytes(struct call *call, int argument)
         call->a[is->length].count = chance(50) ? large[below(4)] : 0;
         return;
     }
+    const size_t whole = length;
     length = odd(call) ? below(length + 1) : length;
     unsigned char *bytes = room(length, true);
+    memset(bytes, 0, length);
     if (block->data) {
         memcpy(bytes, block->data, length);
     }
-    if (length > 0 && odd(call)) {
+    const bool changed = length > 0 && odd(call);
+    if (changed) {
         bytes[below(length)] ^= (unsigned char)(1u << below(8));
     }
+    call->damaged = changed || length < whole || !block->data;
     call->a[argument].pointer = bytes;
     call->a[is->length].count = length;
 }
@@ -560,7 +564,7 @@ static void draw_options(struct call *call, int argument)
     } else if (steps >= 0) {
         call->unlimited = true;
     }
-    for (size_t changes = below(4); changes > 0; changes--) {
+    for (size_t changes = below(call->wild ? 5 : 3); changes > 0; changes--) {
         set_member(call, structure, 1 + (int)below((size_t)structure->count - 1), full);
     }
     if (odd(call)) {

@@ -200,7 +200,7 @@ struct call {
     bool length_set[ARGUMENTS];
     /* Where the results of places go. */
     void *places[ARGUMENTS];
-    bool overlaps, unlimited, moderate;
+    bool overlaps, damaged, unlimited, moderate;
     struct user *user;
     const char *given;
     /* Its line. */

@@ -88,6 +88,8 @@ static void freed(const volatile void *block)
         atomic_fetch_sub_explicit(&live, 1, memory_order_relaxed);
     }
 }
+#elif !defined(__GLIBC__)
+static atomic_long live;
 #else
 /* The allocator of glibc, counted. */
 void *__libc_malloc(size_t bytes);

@@ -98,7 +98,7 @@ static void cook(const char *recipe)
             *given++ = '\0';
         }
         make_named(name, given, false);
-        if (chance(5)) {
+        if (chance(2)) {
             some_call();
         }
     }

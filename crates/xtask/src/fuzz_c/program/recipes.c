@@ -22,8 +22,8 @@ const char *const recipes[] = {
     "?pc_model_add_input u 0.5\n"
     "?pc_model_add_force x' sin(3*t)/2\n"
     "?pc_model_add_output place 2*x\n"
-    "?pc_model_add_event floor x -1 0\n"
-    "?pc_model_add_event_reset floor x' -0.9*x'\n"
+    "pc_model_add_event floor x -1 0\n"
+    "pc_model_add_event_reset floor x -x/10\n"
     "?pc_model_add_event end x+0.5 0 1\n"
     "?pc_model_differentiate 1\n"
     "?pc_model_set_start x 1.5\n"
@@ -48,9 +48,21 @@ const char *const recipes[] = {
     "?pc_solver_add_event mine 0 1\n"
     "pc_solver_advance 1.5\n"
     "pc_solver_sensitivity 0\n"
+    "pc_solver_event_occurrences 0",
+    /* A terminal event. */
+    "pc_model_new falling\n"
+    "pc_model_add_coordinate y 1\n"
+    "pc_model_set_lagrangian y'^2/2-9.81*y\n"
+    "pc_model_add_event half y-0.5 0 0\n"
+    "pc_model_add_event ground y -1 1\n"
+    "pc_model_check\n"
+    "pc_system_new\n"
+    "pc_solver_new\n"
+    "?pc_solver_observe_events\n"
+    "pc_solver_advance 1.5\n"
     "pc_solver_terminal_event\n"
     "pc_solver_last_occurrence 0\n"
-    "pc_solver_event_occurrences 0",
+    "pc_solver_event_occurrences 1",
     /* A force of the program. */
     "pc_model_new forced\n"
     "pc_model_add_coordinate x 1\n"
@@ -96,7 +108,7 @@ const char *const recipes[] = {
     "pc_solver_new\n"
     "pc_solver_run_dense 2\n"
     "pc_dense_eval 1\n"
-    "pc_solver_interpolate *",
+    "pc_solver_interpolate 2 1",
     "pc_model_new euler\n"
     "pc_model_add_quasi_velocity p - 1\n"
     "pc_model_add_quasi_velocity q - 0.5\n"
@@ -117,7 +129,7 @@ const char *const recipes[] = {
     "pc_model_add_constraint blade cos(φ)*y'-sin(φ)*x'\n"
     "pc_model_project_start 1\n"
     "?pc_model_set_constraint_kind blade nonholonomic\n"
-    "?pc_model_observe_reactions 1\n"
+    "pc_model_observe_reactions 1\n"
     "?pc_model_hold_start φ\n"
     "?pc_model_add_independent x'\n"
     "?pc_model_add_independent φ'\n"
@@ -125,6 +137,8 @@ const char *const recipes[] = {
     "pc_model_set_start φ' 1\n"
     "pc_system_new\n"
     "pc_system_reactions\n"
+    "pc_system_reaction_name 0\n"
+    "pc_system_constraint_name 0\n"
     "pc_system_constraint_residuals\n"
     "pc_system_project",
     /* Particles and a body, in a plane. */
@@ -211,6 +225,8 @@ const char *const recipes[] = {
     "pc_model_set_joint_place link 1 0 0\n"
     "pc_model_set_body_mass link 1\n"
     "pc_model_set_body_inertia link [0.1 0.1 0.1]\n"
+    "pc_model_add_coordinate arm 0.5\n"
+    "pc_model_add_coordinate link 0.5\n"
     "pc_model_add_loop pin rod arm link [1 0 0 1 0 0]\n"
     "pc_model_set_loop_length pin 1\n"
     "?pc_model_set_start arm' 1\n"
@@ -227,6 +243,7 @@ const char *const recipes[] = {
     /* A disk that rolls. */
     "pc_model_new rolling\n"
     "pc_model_add_jointed_body fork - planar\n"
+    "pc_model_set_joint_axis fork [0 0 1]\n"
     "pc_model_add_jointed_body post fork prismatic\n"
     "pc_model_set_joint_axis post [0 0 1]\n"
     "pc_model_add_coordinate post 0.3\n"
@@ -268,7 +285,10 @@ const char *const recipes[] = {
     /* A motion that goes on from a checkpoint. */
     "pc_model_builtin bouncing-ball\n"
     "pc_system_new\n"
+    "pc_system_event_name 0\n"
+    "pc_system_event_reset 0\n"
     "pc_solver_new\n"
+    "pc_solver_event_name 0\n"
     "pc_solver_advance 1\n"
     "pc_solver_checkpoint label\n"
     "pc_checkpoint_label\n"
