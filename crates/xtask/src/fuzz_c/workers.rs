@@ -161,6 +161,12 @@ impl<'a> Worker<'a> {
         Counts::read(&self.place.join("counts"), functions)
     }
 
+    /// Shows what it has told.
+    fn tell(&self) {
+        let told = fs::read(self.place.join("falls")).unwrap_or_default();
+        print!("{}", String::from_utf8_lossy(&told));
+    }
+
     /// Whether it has done its share. Where it has ended before, the next sequence is begun.
     fn is_done(&mut self, functions: usize) -> Result<bool, Error> {
         let lost = |source| Error::Output { program: "fuzz".to_owned(), source };
@@ -170,7 +176,8 @@ impl<'a> Worker<'a> {
             return Ok(true);
         }
         if counts.falls == 0 {
-            // It ended otherwise than by a fall.
+            // It ended otherwise than by a fall, such as by a leak that is found at its end.
+            self.tell();
             return Err(Error::Failed { command: format!("{}", self.program.display()), status });
         }
         if counts.falls >= FALLS || counts.calls >= self.calls {
@@ -242,10 +249,7 @@ pub(crate) fn run(play: &Play, program: &Path, place: &Path, names: &[&str]) -> 
             );
         }
     }
-    for worker in &workers {
-        let told = fs::read(worker.place.join("falls")).unwrap_or_default();
-        print!("{}", String::from_utf8_lossy(&told));
-    }
+    workers.iter().for_each(Worker::tell);
     let sums = sums(&workers, names.len());
     if play.table {
         print!("{}", sums.table(names));

@@ -162,7 +162,7 @@ static void draw_expression(char *text, size_t room_of_text)
 static char *draw_odd_text(void)
 {
     static const char *const odd_texts[] = { "",  " ", "\n", "x y", "\"", "[", "]\n[x]\n", "\xff\xfe", "\xc3", "a\xed\xa0\x80",
-                                             "\xe2\x80\xae" "x", "x''", "x'''", "'", "1e999", "\x01", "#", "=", "-", "0x10", "NaN",
+                                             "\u202ex", "x''", "x'''", "'", "1e999", "\x01", "#", "=", "-", "0x10", "NaN",
                                              "inf", "e\xcc\x81", "\xef\xbb\xbfx", "%s%n", "..", "a.b", "λ_c" };
     char text[8000];
     size_t length = 1 + below(sizeof text - 1);
