@@ -1782,7 +1782,8 @@ pc_status pc_system_absolute_tolerances(const pc_system *system,
                                         pc_error **error);
 
 /**
- * Writes the values of all parameters.
+ * Writes the values of all parameters. Where a parameter that is an expression in others has no
+ * value, its entry is not a finite number.
  */
 pc_status pc_system_parameters(const pc_system *system,
                                double *values,

@@ -1,13 +1,12 @@
 //! `cargo xtask c-examples`: builds the examples in C and C++ with every compiler there is, runs them, compares their numbers
 //! with those of the program `pc`, and runs them again under the sanitizers and valgrind.
 
-use std::fs;
-use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::c_libraries::{self, SANITIZED, works};
 use crate::command::{
-    announce_and_run, build_as_for_tests, built_program, cargo, succeeds, target_directory, workspace_root,
+    announce_and_run, build_as_for_tests, built_program, cargo, target_directory, workspace_root,
 };
 use crate::error::Error;
 use crate::tools::Machine;
@@ -15,9 +14,6 @@ use crate::{c_fresh, c_interface, c_numbers, install, setup};
 
 /// A C compiler with its C++ compiler.
 const COMPILERS: [(&str, &str); 2] = [("gcc", "g++"), ("clang", "clang++")];
-
-/// Memory errors, leaks and undefined behaviour end a program.
-const SANITIZED: &str = "-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all";
 
 /// Races end a program: those of its own code, for that of the library is not instrumented.
 const THREADS: &str = "-O1 -g -fsanitize=thread";
@@ -113,12 +109,7 @@ pub(crate) fn quick() -> Result<(), Error> {
     if !shared.exists() {
         build_as_for_tests(&["--lib"])?;
     }
-    let wrong = |source| Error::File { path: libraries.display().to_string(), source };
-    fs::create_dir_all(&libraries).map_err(wrong)?;
-    for name in ["libpc.so".to_owned(), format!("libpc.so.{}", crate::header::abi_version()?)] {
-        let _ = fs::remove_file(libraries.join(&name)); // one that is there would be in the way
-        symlink(&shared, libraries.join(name)).map_err(wrong)?;
-    }
+    c_libraries::link(&shared, &libraries)?;
     let (compiler, include) = (("cc", "c++"), workspace_root().join("include"));
     c_interface::headers(compiler, &include, &c_interface::sundials(&built), &place.join("headers"))?;
     let library = Library::shared(&libraries, &place);
@@ -194,15 +185,6 @@ fn threads_alone(make: &mut Command) -> &mut Command {
     make.args(["PROGRAMS=threads", "WITH_FORTRAN=", "WITH_GSL=", "WITH_SUNDIALS="])
 }
 
-/// Whether a program compiled with such flags can be built and run.
-fn works(compiler: &str, flags: &str, place: &Path) -> bool {
-    let (source, program) = (place.join("nothing.c"), place.join("nothing"));
-    let written = fs::write(&source, "int main(void) { return 0; }\n").is_ok();
-    let mut compile = Command::new(compiler);
-    compile.args(flags.split_whitespace()).arg(source).arg("-o").arg(&program);
-    written && succeeds(&mut compile) && succeeds(&mut Command::new(program))
-}
-
 fn with_cmake(installed: &Path, build: &Path) -> Result<(), Error> {
     let examples = workspace_root().join("examples-c");
     let mut configure = Command::new("cmake");
@@ -214,6 +196,8 @@ fn with_cmake(installed: &Path, build: &Path) -> Result<(), Error> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]

@@ -9,6 +9,7 @@ mod book;
 mod c_examples;
 mod c_fresh;
 mod c_interface;
+mod c_libraries;
 mod c_numbers;
 mod cargo_tools;
 mod command;
@@ -17,6 +18,7 @@ mod demo;
 mod error;
 mod fmu;
 mod fuzz;
+mod fuzz_c;
 mod header;
 mod install;
 mod notices;
@@ -47,6 +49,10 @@ usage: cargo xtask <command>
   bench [NAME…]    run the benchmarks, all of them or those named
   fuzz models|trees|breaks [--count N] [--seed S] [--model K]
                    run random models and compare them with independent computations; --model shows one of them
+  fuzz c [--count N] [--seed S] [--table] [--replay S:K] [--release] [--plain]
+                   call every function of the C library in random sequences, N calls in all, and check what the header
+                   promises; --table shows the calls of each function, --replay those of one sequence, --release tries the
+                   released library, --plain leaves out the sanitizers
   attack [--minutes N | --count N] [--seed S]
                    run the program on hostile models, files and checkpoints, and kill it; 10 minutes unless told
   book             make target/book of the pages in docs by mdbook, which is fetched from PyPI unless it is installed

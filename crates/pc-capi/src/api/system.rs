@@ -204,7 +204,8 @@ pub unsafe extern "C" fn pc_system_absolute_tolerances(
     unsafe { inside(system, error, scale) }
 }
 
-/// Writes the values of all parameters.
+/// Writes the values of all parameters. Where a parameter that is an expression in others has no
+/// value, its entry is not a finite number.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_system_parameters(
     system: *const pc_system,

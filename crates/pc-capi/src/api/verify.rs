@@ -1,13 +1,14 @@
 //! Comparison of the equations with a second derivation.
 
 use std::ffi::c_char;
+use std::ptr;
 
 use ::pc_model::{Flow, Model, Variables};
 use pc_verify::{Agreement, Options, Second, VerifyError, verify};
 
 use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
-use crate::ffi::pointer::{clear, numbers, write};
+use crate::ffi::pointer::{numbers, write};
 use crate::ffi::status::pc_status;
 use crate::ffi::strings::give;
 use crate::machinery::system::{Inner, Inventory, inside, pc_system};
@@ -28,11 +29,9 @@ pub unsafe extern "C" fn pc_system_verify(
     text: *mut *mut c_char,
     error: *mut *mut pc_error,
 ) -> pc_status {
+    // SAFETY: as the preamble demands.
+    unsafe { begin(text) };
     let compare = |inventory: &Inventory, inner: &mut Inner| {
-        if !text.is_null() {
-            // SAFETY: the pointers are as the preamble demands.
-            unsafe { clear(text, "text") }?;
-        }
         let report = inventory.derive(|model| report(model, inner.field.parameters(), states))?;
         // SAFETY: as the preamble demands.
         if text.is_null() { Ok(()) } else { unsafe { write(text, give(&report), "text") } }
@@ -52,11 +51,9 @@ pub unsafe extern "C" fn pc_system_verify_at(
     text: *mut *mut c_char,
     error: *mut *mut pc_error,
 ) -> pc_status {
+    // SAFETY: as the preamble demands.
+    unsafe { begin(text) };
     let compare = |inventory: &Inventory, inner: &mut Inner| {
-        if !text.is_null() {
-            // SAFETY: the pointers are as the preamble demands.
-            unsafe { clear(text, "text") }?;
-        }
         // SAFETY: null or `y_length` numbers, as the preamble demands.
         let y = unsafe { numbers(y, y_length, inventory.dim(), "y") }?;
         let (variables, parameters) = (inventory.facts.variables, inner.field.parameters());
@@ -66,6 +63,17 @@ pub unsafe extern "C" fn pc_system_verify_at(
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, compare) }
+}
+
+/// Writes NULL to the place of a text, in case the call fails.
+///
+/// # Safety
+/// Null, or a pointer to memory for a pointer.
+unsafe fn begin(text: *mut *mut c_char) {
+    if !text.is_null() {
+        // SAFETY: not null, and then as promised.
+        unsafe { text.write(ptr::null_mut()) };
+    }
 }
 
 fn report(mut model: Model, parameters: &[f64], states: usize) -> Result<String, CallError> {

@@ -67,6 +67,11 @@ impl Followed {
         self.model.set_parameters(values);
     }
 
+    /// The number of the model's events.
+    fn of_model(&self) -> usize {
+        self.list.len() - self.own.len()
+    }
+
     /// Whether any events are computed by functions of the program.
     pub(crate) fn has_own(&self) -> bool {
         !self.own.is_empty()
@@ -79,7 +84,7 @@ impl Events for Followed {
     }
 
     fn evaluate(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
-        let (of_model, of_own) = values.split_at_mut(self.list.len() - self.own.len());
+        let (of_model, of_own) = values.split_at_mut(self.of_model());
         if !of_model.is_empty() {
             self.model.evaluate(t, y, of_model)?;
         }
@@ -100,7 +105,7 @@ impl Events for Followed {
     }
 
     fn reset(&mut self, event: usize, t: f64, y: &mut [f64]) -> Result<(), Failure> {
-        let of_model = self.list.len() - self.own.len();
+        let of_model = self.of_model();
         if event < of_model {
             return self.model.reset(event, t, y);
         }
@@ -125,11 +130,17 @@ impl Events for Followed {
         y: &[f64],
         reset: &mut [f64],
     ) -> Result<f64, Failure> {
-        self.model.by_parameter(event, parameter, t, y, reset)
+        if event < self.of_model() {
+            return self.model.by_parameter(event, parameter, t, y, reset);
+        }
+        // A function of the program is one of t and y, and resets nothing where sensitivities are.
+        reset.fill(0.0);
+        Ok(0.0)
     }
 
+    /// Those of functions of the program are difference quotients, and with them all.
     fn has_derivatives(&self) -> bool {
-        self.own.iter().all(|own| own.reset.is_none()) && self.model.has_derivatives()
+        self.own.is_empty() && self.model.has_derivatives()
     }
 
     fn gradient(&mut self, event: usize, t: f64, y: &[f64], by_state: &mut [f64]) -> Result<f64, Failure> {

@@ -336,3 +336,31 @@ fn missing_events_are_refused() {
         );
     }
 }
+
+/// The sensitivity of the fall y = h − g t²/2 by g, which an event that resets nothing leaves as it is.
+#[test]
+fn sensitivities_go_on_through_an_event_without_a_reset() {
+    let text = "[parameters]\ng = 9.81\n[coordinates]\ny = 1.0\n[lagrangian]\nkinetic = \"y'^2/2\"\n\
+                potential = \"g*y\"\n[events.low]\nwhen = \"y - 0.25\"\n";
+    let model = Model::text(text).unwrap();
+    // SAFETY: a live model.
+    call(|error| unsafe { pc_model_differentiate(model.0, 1, error) }).unwrap();
+    let system = model.system(pc_form::PC_POINCARE).unwrap();
+    let solver = Solver::of(&system, &sharp());
+    // SAFETY: a live solver, and no start.
+    call(|error| unsafe { pc_solver_add_sensitivity(solver.0, 0, ptr::null(), 0, error) }).unwrap();
+    let mut own = Own { level: 0.5, ..Own::default() };
+    add(&solver, &mut own, false, false).unwrap();
+    let (t, mut column) = (0.4, [f64::NAN; 2]);
+    solver.advance(t).0.unwrap();
+    let mut count = 0;
+    // SAFETY: a live solver, and a place for a number.
+    call(|error| unsafe { pc_solver_event_occurrences(solver.0, 1, &raw mut count, error) }).unwrap();
+    // SAFETY: a live solver, and room for a column.
+    call(|error| unsafe { pc_solver_sensitivity(solver.0, 0, column.as_mut_ptr(), 2, error) }).unwrap();
+    assert_eq!(count, 1);
+    for (found, expected) in column.iter().zip([-t * t / 2.0, -t]) {
+        // The tolerance of the integration.
+        assert!((found - expected).abs() < 1e-9, "{found} is not {expected}");
+    }
+}

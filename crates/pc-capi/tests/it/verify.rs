@@ -77,3 +77,17 @@ fn a_null_system_is_refused() {
         pc_error_free(error);
     }
 }
+
+/// NULL, whatever the place of the text held.
+#[test]
+fn a_call_that_fails_leaves_no_text() {
+    let mut text = ptr::dangling_mut::<c_char>();
+    // SAFETY: no system, and a place for a text.
+    let status = unsafe { pc_system_verify(ptr::null(), 1, &raw mut text, ptr::null_mut()) };
+    assert_eq!((status, text), (pc_status::PC_INVALID_ARGUMENT, ptr::null_mut()));
+    text = ptr::dangling_mut();
+    // SAFETY: as before.
+    let status =
+        unsafe { pc_system_verify_at(ptr::null(), 0.0, ptr::null(), 0, &raw mut text, ptr::null_mut()) };
+    assert_eq!((status, text), (pc_status::PC_INVALID_ARGUMENT, ptr::null_mut()));
+}

@@ -20,6 +20,9 @@ pub(super) const FIRST: f64 = 1e-6;
 /// most this many times the initial length that the new rates suggest.
 const LEAP: f64 = 30.0;
 
+/// No step is longer, so that its ends and its length are numbers, and it becomes shorter when it is halved.
+const LONGEST: f64 = f64::MAX / 4.0;
+
 /// Why a step is rejected.
 enum Refusal {
     /// The error, which is greater than 1 or NaN.
@@ -51,12 +54,12 @@ impl<F: VectorField> Dop853<F> {
                 self.last_length.take().map_or(first, |last| last.max(first).min(LEAP * first))
             }
         };
-        let mut length = planned.min(self.control.longest).max(self.control.shortest);
+        let mut length = planned.min(self.control.longest).max(self.control.shortest).min(LONGEST);
         let mut end = self.look_ahead(t + direction * length, limit, towards)?.or(limit);
         let mut refused = false;
         let mut failed = None; // the last failure of the field in this step: mostly why it becomes too short
         loop {
-            let to = t + direction * length;
+            let to = (t + direction * length).clamp(-f64::MAX, f64::MAX);
             let near = |end: &f64| (to - end) * direction > -LEFT * length;
             let (to, ends) = end.filter(near).map_or((to, false), |end| (end, true));
             if to == t || !(length > 4.0 * f64::EPSILON * t.abs() || ends) {

@@ -77,3 +77,15 @@ fn events_from_far_away() {
         assert!((found[0] - quarter).abs() < 1e-6 && (found[1] - 3.0 * quarter).abs() < 1e-6, "{found:?}");
     }
 }
+
+/// At rest, where steps grow until times leave the range of numbers.
+#[test]
+fn a_state_at_rest_until_the_last_time() {
+    for method in [Method::Dop853, Method::Auto] {
+        for end in [f64::MAX, -f64::MAX] {
+            let begun = Solve::new(erased(oscillator()), 0.0, &[0.0, 0.0]).method(Options::new(method));
+            let motion = begun.run(&[end]).unwrap().trajectory;
+            assert_eq!(motion.last(), Some((end, &[0.0, 0.0][..])), "{method}");
+        }
+    }
+}
