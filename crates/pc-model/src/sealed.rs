@@ -84,7 +84,8 @@ pub fn open<T: DeserializeOwned>(kind: &'static str, bytes: &[u8]) -> Result<T, 
     if Sha256::digest(contents).as_slice() != hash {
         return Err(SealError::Damaged);
     }
-    let (found, contents): (String, _) = postcard::take_from_bytes(contents).map_err(|error| unreadable(&error))?;
+    let (found, contents): (String, _) =
+        postcard::take_from_bytes(contents).map_err(|error| unreadable(&error))?;
     if found != kind {
         return Err(SealError::Kind { found, expected: kind });
     }

@@ -178,7 +178,7 @@ impl From<Error> for PyErr {
             Error::Solve(SolveError::Integration(_) | SolveError::Setup { .. }) => {
                 raised(py, "IntegrationError", &chain(&error))
             }
-            Error::Verify(_) | Error::Unsupported { .. } | Error::Busy => {
+            Error::Verify(_) | Error::Unsupported { .. } | Error::Busy | Error::Saved(_) => {
                 raised(py, "ChetaevError", &chain(&error))
             }
             Error::Choice { .. }
