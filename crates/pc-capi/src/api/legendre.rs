@@ -2,7 +2,7 @@
 
 use pc_mech::{LegendreTransform, MechError};
 
-use crate::api::rates::{State, Target, slices};
+use crate::api::rates::{State, Target, all_finite, slices};
 use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
 use crate::ffi::status::pc_status;
@@ -74,7 +74,8 @@ unsafe fn transformed(
         let target = Target { data, length, expected: dim, what: "result" };
         // SAFETY: as promised.
         let (y, result) = unsafe { slices(state, dim, target) }?;
-        Ok(transform(inner.legendre(inventory)?, t, y, result)?)
+        transform(inner.legendre(inventory)?, t, y, result)?;
+        all_finite("the result", result)
     };
     // SAFETY: as promised.
     unsafe { inside(system, error, transform) }

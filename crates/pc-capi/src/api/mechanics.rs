@@ -3,7 +3,7 @@
 use ::pc_model::Model;
 use pc_mech::{EvaluationError, InverseDynamics, MassFactors, MechError, SingularMatrix, VectorField};
 
-use crate::api::rates::{State, Target, slices};
+use crate::api::rates::{State, Target, all_finite, slices};
 use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
 use crate::ffi::pointer::{apart, numbers, write};
@@ -199,7 +199,7 @@ pub unsafe extern "C" fn pc_system_solve_mass_matrix(
         })?;
         w.copy_from_slice(v);
         factors.solve(w);
-        Ok(())
+        all_finite("M⁻¹ v", w)
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, compute) }
@@ -303,7 +303,7 @@ pub unsafe extern "C" fn pc_system_residual(
         for i in n + k..dim {
             residual[i] = rates[i] - residual[i];
         }
-        Ok(())
+        all_finite("the residual", residual)
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, compute) }

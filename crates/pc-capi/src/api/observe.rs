@@ -1,6 +1,6 @@
 //! Observables, reactions and constraint residuals along a motion.
 
-use crate::api::rates::{State, Target, slices};
+use crate::api::rates::{State, Target, all_finite, slices};
 use crate::ffi::call_error::CallError;
 use crate::ffi::error::pc_error;
 use crate::ffi::status::pc_status;
@@ -31,14 +31,6 @@ pub unsafe extern "C" fn pc_system_observe(
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, observe) }
-}
-
-/// Returns an error unless all values are finite.
-fn all_finite(what: &'static str, values: &[f64]) -> Result<(), CallError> {
-    match values.iter().find(|value| !value.is_finite()) {
-        Some(&value) => Err(CallError::NoValue { what, value }),
-        None => Ok(()),
-    }
 }
 
 /// Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: these are

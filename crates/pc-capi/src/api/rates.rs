@@ -65,6 +65,14 @@ unsafe fn misfits<'a>(
     unsafe { Ok((numbers(state.y, state.length, dim, "y")?, room(data, length, expected, what)?)) }
 }
 
+/// Returns an error unless all values are finite.
+pub(crate) fn all_finite(what: &'static str, values: &[f64]) -> Result<(), CallError> {
+    match values.iter().find(|value| !value.is_finite()) {
+        Some(&value) => Err(CallError::NoValue { what, value }),
+        None => Ok(()),
+    }
+}
+
 /// Writes the rate f(t, y) of the state to ydot.
 ///
 /// After the first call it takes no lock if f is a single piece of machine code, that is, if no
@@ -199,7 +207,8 @@ pub unsafe extern "C" fn pc_system_sparse_jacobian(
         let target = Target { data: values, length, expected, what: "values" };
         // SAFETY: as the preamble demands.
         let (y, values) = unsafe { slices(state, dim, target) }?;
-        Ok(inner.field.sparse_jacobian(t, y, values)?)
+        inner.field.sparse_jacobian(t, y, values)?;
+        all_finite("an entry of ∂f/∂y", values)
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, evaluate) }
@@ -235,7 +244,7 @@ pub unsafe extern "C" fn pc_system_jvp(
         for ((i, j), value) in pattern.entries().zip(&*values) {
             product[i] += value * v[j];
         }
-        Ok(())
+        all_finite("the product", product)
     };
     // SAFETY: as the preamble demands.
     unsafe { inside(system, error, evaluate) }
@@ -329,6 +338,7 @@ pub unsafe extern "C" fn pc_system_project(
         if field.has_projection() {
             field.project(t, state)?;
         }
+        all_finite("a component of the state", state)?;
         // SAFETY: as the preamble demands.
         unsafe { room(y, y_length, inventory.dim(), "y") }?.copy_from_slice(state);
         Ok(())

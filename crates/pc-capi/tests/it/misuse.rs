@@ -3,7 +3,7 @@
 use std::ffi::{c_int, c_void};
 use std::ptr;
 
-use crate::common::{self, Model, Solver, System, call, sharp};
+use crate::common::{self, At, Model, Solver, System, call, sharp};
 use pc::pc_form::PC_POINCARE;
 use pc::pc_status::*;
 use pc::*;
@@ -194,4 +194,45 @@ fn a_model_is_checked_with_its_names() {
     // SAFETY: a live model.
     let refusal = call(|error| unsafe { pc_model_check(model.unwrap().0, error) }).unwrap_err();
     assert_eq!((refusal.status, refusal.line), (PC_INVALID_MODEL, 5));
+}
+
+#[test]
+fn numbers_that_are_not_finite_give_none_that_are_not() {
+    let systems = ["heavy-top-lagrange", "rod", "double-pendulum-links"].map(System::of);
+    for (system, wrong) in systems.iter().flat_map(|system| [(system, f64::NAN), (system, f64::INFINITY)]) {
+        let (_, mut y) = system.start();
+        let (n, last) = (y.len(), y.len() - 1);
+        y[last] = wrong;
+        let functions: [(At, usize); 4] = [
+            (pc_system_rhs, n),
+            (pc_system_jacobian, n * n),
+            (pc_system_to_momenta, n),
+            (pc_system_to_quasi_velocities, n),
+        ];
+        for (i, (function, length)) in functions.into_iter().enumerate() {
+            let found = system.at(function, 0.0, &y, length);
+            let refused = found.is_err_and(|refusal| refusal.status == PC_EVALUATION);
+            assert!(refused, "function {i} of {} at {wrong}", system.name(0));
+        }
+        let given = y.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+        let data = y.as_mut_ptr();
+        // SAFETY: a live system and a state of its.
+        let refusal = call(|error| unsafe { pc_system_project(system.0, 0.0, data, n, error) }).unwrap_err();
+        assert_eq!(refusal.status, PC_EVALUATION, "{refusal:?}");
+        assert!(y.iter().map(|value| value.to_bits()).eq(given), "the state stays as it is");
+    }
+    // Of vectors, too.
+    let system = &systems[0];
+    let (_, y) = system.start();
+    let (n, wrong, mut out) = (y.len(), vec![f64::INFINITY; y.len()], vec![0.0; y.len()]);
+    let (y, v, out) = (y.as_ptr(), wrong.as_ptr(), out.as_mut_ptr());
+    // SAFETY: a live system and arrays as long as said.
+    let outcomes = unsafe {
+        [
+            call(|error| pc_system_jvp(system.0, 0.0, y, n, v, n, out, n, error)),
+            call(|error| pc_system_solve_mass_matrix(system.0, 0.0, y, n, v, 3, out, 3, error)),
+            call(|error| pc_system_residual(system.0, 0.0, y, n, v, n, out, n, error)),
+        ]
+    };
+    assert!(outcomes.into_iter().all(|outcome| outcome.is_err_and(|refusal| refusal.status == PC_EVALUATION)));
 }
