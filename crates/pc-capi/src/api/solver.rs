@@ -178,9 +178,10 @@ pub unsafe extern "C" fn pc_solver_step(
     error: *mut *mut pc_error,
 ) -> pc_status {
     let step = |integration: &mut Integration, dim: usize| {
+        if t.is_null() {
+            return Err(CallError::Null { what: "t" });
+        }
         // SAFETY: the pointers are as the preamble demands.
-        unsafe { write(t, f64::NAN, "t") }?;
-        // SAFETY: as the preamble demands.
         let y = unsafe { room(y, y_length, dim, "y") }?;
         let ending = integration.step(towards)?;
         y.copy_from_slice(integration.state());
