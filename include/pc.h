@@ -404,8 +404,8 @@ typedef enum {
 typedef struct pc_cancel pc_cancel;
 
 /**
- * The equations of motion of a model, derived and compiled: what all its systems have in common. It
- * never changes, so any number of threads may use it. Free it with pc_code_free.
+ * The equations of motion of a model, derived and compiled: what all its systems have in
+ * common. It never changes, so any number of threads may use it. Free it with pc_code_free.
  */
 typedef struct pc_code pc_code;
 

@@ -11,8 +11,8 @@ use crate::machinery::derivations::Derivations;
 use crate::machinery::exclusive::Exclusive;
 use crate::machinery::system::{Facts, Inner, Inventory, pc_system};
 
-/// The equations of motion of a model, derived and compiled: what all its systems have in common. It
-/// never changes, so any number of threads may use it. Free it with pc_code_free.
+/// The equations of motion of a model, derived and compiled: what all its systems have in
+/// common. It never changes, so any number of threads may use it. Free it with pc_code_free.
 pub struct pc_code {
     inventory: Arc<Inventory>,
     /// The equations with the values of the model, of which each system has a copy.

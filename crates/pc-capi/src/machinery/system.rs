@@ -236,8 +236,8 @@ impl Inner {
     /// The motion with its derivative with respect to time, derived on first use, with the current
     /// parameters; nothing if f does not contain time.
     pub(crate) fn by_time(&mut self, inventory: &Inventory) -> Result<Option<&mut Motion>, CallError> {
-        let time_dependence = self.field.time_dependence();
-        let derive = || match time_dependence {
+        let Inner { field, by_time, .. } = self;
+        let derive = || match field.time_dependence() {
             TimeDependence::Absent => Ok(None),
             TimeDependence::Known(_) | TimeDependence::Unknown => inventory.derive(|mut model| {
                 model.differentiate_by_time(true);
@@ -246,9 +246,9 @@ impl Inner {
                 })
             }),
         };
-        let mut motion = inventory.derivations.by_time.own(&mut self.by_time, derive)?.as_deref_mut();
+        let mut motion = inventory.derivations.by_time.own(by_time, derive)?.as_deref_mut();
         if let Some(motion) = &mut motion {
-            motion.parameters_mut().copy_from_slice(self.field.parameters());
+            motion.parameters_mut().copy_from_slice(field.parameters());
         }
         Ok(motion)
     }
