@@ -1832,8 +1832,8 @@ pc_status pc_system_find_observable(const pc_system *system,
                                     pc_error **error);
 
 /**
- * Declares that a force computed by a function of yours acts on a quasi-velocity or, if the model
- * declares none, on a velocity x' or its coordinate x. This force is added to the other forces
+ * Declares that a force computed by a function of yours acts on a quasi-velocity, or on a
+ * coordinate if the model declares no quasi-velocities. This force is added to the other forces
  * that act there. The function belongs to the system, not to the model: set it with
  * pc_system_set_force. An unknown name is reported by pc_model_check and pc_system_new.
  */

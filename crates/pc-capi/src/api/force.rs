@@ -44,8 +44,8 @@ pub type pc_force_jacobian = Option<
     ) -> c_int,
 >;
 
-/// Declares that a force computed by a function of yours acts on a quasi-velocity or, if the model
-/// declares none, on a velocity x' or its coordinate x. This force is added to the other forces
+/// Declares that a force computed by a function of yours acts on a quasi-velocity, or on a
+/// coordinate if the model declares no quasi-velocities. This force is added to the other forces
 /// that act there. The function belongs to the system, not to the model: set it with
 /// pc_system_set_force. An unknown name is reported by pc_model_check and pc_system_new.
 #[unsafe(no_mangle)]

@@ -333,22 +333,3 @@ fn external_forces_are_zero_where_a_system_is_verified() {
         assert!(on.iter().all(left_out), "{said}");
     }
 }
-
-#[test]
-fn a_force_is_named_by_its_velocity_or_the_coordinate() {
-    let text = "coordinates.waist = 1.0\nlagrangian.kinetic = \"waist'^2\"";
-    for name in ["waist'", "waist"] {
-        let (model, on) = (Model::text(text).unwrap(), c(name));
-        for _ in 0..2 {
-            // SAFETY: a live model and a text.
-            call(|error| unsafe { pc_model_add_external_force(model.0, on.as_ptr(), error) }).unwrap();
-        }
-        let system = model.system(PC_POINCARE).unwrap();
-        // SAFETY: a live system, whose names live as long.
-        let (count, first) = unsafe {
-            let first = CStr::from_ptr(pc_system_force_name(system.0.as_ref(), 0));
-            (pc_system_force_count(system.0.as_ref()), first.to_str().unwrap())
-        };
-        assert_eq!((count, first), (1, "waist'"));
-    }
-}
