@@ -63,7 +63,7 @@ pub fn entries(run: &Run) -> Vec<(&'static str, Vec<String>)> {
         line("verified", &verification.lines());
     }
     if let [first, others @ ..] = run.verified_before.as_slice() {
-        line("kept", &[&[format!("in an earlier run, which was verified: {first}")], others].concat());
+        line("verified", &[&[format!("in an earlier run, {first}")], others].concat());
     }
     if let Some(row) = run.table.rows().next_back() {
         let state = run.table.coordinates().start..run.table.states().end;
