@@ -234,5 +234,7 @@ fn numbers_that_are_not_finite_give_none_that_are_not() {
             call(|error| pc_system_residual(system.0, 0.0, y, n, v, n, out, n, error)),
         ]
     };
-    assert!(outcomes.into_iter().all(|outcome| outcome.is_err_and(|refusal| refusal.status == PC_EVALUATION)));
+    assert!(
+        outcomes.into_iter().all(|outcome| outcome.is_err_and(|refusal| refusal.status == PC_EVALUATION))
+    );
 }
