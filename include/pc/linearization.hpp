@@ -74,7 +74,7 @@ private:
         return values;
     }
 
-    detail::owned<pc_linearization, pc_linearization_free> handle_;
+    detail::owned<pc_linearization, pc_linearization_free> handle_{};
     std::size_t dim_;
 };
 
