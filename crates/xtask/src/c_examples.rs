@@ -202,6 +202,8 @@ mod tests {
 
     #[test]
     fn every_example_is_built_and_is_short() {
+        // Whole controllers, each with a motion to follow and a regulator.
+        const LONG: [&str; 2] = ["computed_torque", "task_space"];
         let examples = workspace_root().join("examples-c");
         let [make, cmake] =
             ["Makefile", "CMakeLists.txt"].map(|name| fs::read_to_string(examples.join(name)).unwrap());
@@ -215,7 +217,8 @@ mod tests {
             }
             let name = path.file_stem().unwrap().to_str().unwrap();
             assert!(words(&make, name) && words(&cmake, name), "{name} is not built");
-            assert!(fs::read_to_string(&path).unwrap().lines().count() < 120, "{name} is long");
+            let lines = fs::read_to_string(&path).unwrap().lines().count();
+            assert!(lines < 120 || LONG.contains(&name), "{name} is long");
         }
     }
 }
