@@ -41,7 +41,7 @@ pub unsafe extern "C" fn pc_system_lyapunov(
         let dim = inventory.dim();
         // SAFETY: null or options, as the preamble demands.
         let options = unsafe { take(options, "options")?.options(dim, inventory.deadline()) }?;
-        if y_length == dim && exponents_length <= dim {
+        if y_length == dim {
             apart((y, dim, "y"), (exponents, exponents_length, "exponents"))?;
         }
         // SAFETY: null or `y_length` numbers, as the preamble demands; the exponents share no memory with them.

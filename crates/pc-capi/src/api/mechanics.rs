@@ -286,7 +286,7 @@ pub unsafe extern "C" fn pc_system_residual(
             }
             if inventory.facts.variables.has_momenta() {
                 residual.copy_from_slice(rates);
-                return Ok(());
+                return all_finite("the residual", residual);
             }
             residual.fill(0.0);
         } else {

@@ -30,7 +30,8 @@ struct OfPoint {
 impl OfPoint {
     /// What was given, checked.
     ///
-    /// # Safety All pointers are as the preamble demands.
+    /// # Safety
+    /// All pointers are as the preamble demands.
     unsafe fn read<'a>(&self, state: State, dim: usize) -> Result<Read<'a>, CallError> {
         let Target { data, length, expected, what } = self.target;
         let given = !(self.point.is_null() && self.point_length == 0);

@@ -189,7 +189,8 @@ fn separate(wanted: &[Wish], read: &[(*const f64, usize, usize, &'static str)]) 
 
 /// The array, unless it is null.
 ///
-/// # Safety Null, or room for as many numbers as said, which nobody else uses during the call.
+/// # Safety
+/// Null, or room for as many numbers as said, which nobody else uses during the call.
 unsafe fn wish<'a>((data, length, expected, what): Wish) -> Result<Option<&'a mut [f64]>, CallError> {
     if data.is_null() && length == 0 {
         return Ok(None);

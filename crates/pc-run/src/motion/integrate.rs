@@ -147,20 +147,23 @@ fn integrated(
     stream: Option<&mut Stream<'_>>,
     observer: &dyn Observer,
 ) -> Result<Run, RunError> {
-    let remarks = remarks::of(assembly)?;
+    let cache = besides.cache.as_ref().filter(|_| besides.verify);
+    let is_told = besides.remarks || cache.is_some();
+    let remarks = if is_told { remarks::of(assembly)? } else { Vec::new() };
     if besides.remarks {
         remarks.iter().for_each(|remark| observer.remark(remark));
     }
     let flow = Flow::new(model, assembly, form)?;
     let plan = plan()?;
     let facts = Facts::of(assembly);
-    let cache = besides.cache.as_ref().filter(|_| besides.verify);
     let kept = cache
         .filter(|_| plan.sensitivities.is_empty())
         .map(|cache| (cache, Derived { flow: flow.clone(), prototype: None, facts: facts.clone() }));
     let run =
         Integration { model, assembly: Some(assembly), facts, flow, plan, besides, observer }.run(stream)?;
-    if let (Some((cache, derived)), Some(verification)) = (kept, &run.verification) {
+    if let (Some((cache, derived)), Some(verification)) = (kept, &run.verification)
+        && verification.agrees()
+    {
         let verified = verification.lines();
         cache.keep(model, form, &Kept { derived, remarks, verified }, observer);
     }

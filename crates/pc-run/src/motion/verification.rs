@@ -102,6 +102,11 @@ impl Verification {
         self.second.as_ref().is_ok_and(|second| second.is_long(flow))
     }
 
+    /// Whether the equations were compared at some state, where they agree.
+    pub(crate) fn agrees(&self) -> bool {
+        self.outcomes.iter().any(|(_, outcome)| outcome.is_ok())
+    }
+
     /// Compares the equations at one state.
     ///
     /// # Errors
