@@ -4,7 +4,7 @@ use std::ffi::{c_int, c_void};
 use std::ptr;
 
 use crate::common::{self, At, Model, Solver, System, call, sharp};
-use pc::pc_form::PC_POINCARE;
+use pc::pc_form::{PC_CANONICAL, PC_POINCARE};
 use pc::pc_status::*;
 use pc::*;
 
@@ -236,5 +236,32 @@ fn numbers_that_are_not_finite_give_none_that_are_not() {
     };
     assert!(
         outcomes.into_iter().all(|outcome| outcome.is_err_and(|refusal| refusal.status == PC_EVALUATION))
+    );
+}
+
+#[test]
+fn a_residual_in_momenta_is_finite_or_refused() {
+    let system = Model::named("heavy-top-lagrange").system(PC_CANONICAL).unwrap();
+    let (_, y) = system.start();
+    let (n, rates, mut out) = (y.len(), vec![f64::INFINITY; y.len()], vec![0.0; y.len()]);
+    let (y, v, out) = (y.as_ptr(), rates.as_ptr(), out.as_mut_ptr());
+    // SAFETY: a live system and arrays as long as said.
+    let refusal = call(|error| unsafe { pc_system_residual(system.0, 0.0, y, n, v, n, out, n, error) });
+    assert_eq!(refusal.unwrap_err().status, PC_EVALUATION);
+}
+
+#[test]
+fn exponents_share_no_memory_with_the_state_even_where_they_are_too_many() {
+    let system = System::of("euler-top");
+    let mut numbers = [0.5; 8];
+    let data = numbers.as_mut_ptr();
+    // SAFETY: a live system and arrays as long as said; they overlap, which is refused.
+    let refusal = call(|error| unsafe {
+        pc_system_lyapunov(system.0, ptr::null(), 0.0, data, 3, 0.5, 2, 0, data.add(2), 6, error)
+    });
+    let refusal = refusal.unwrap_err();
+    assert_eq!(
+        (refusal.status, refusal.message.as_str()),
+        (PC_INVALID_ARGUMENT, "y and exponents share memory, but must be separate")
     );
 }
