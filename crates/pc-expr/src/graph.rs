@@ -2,8 +2,8 @@
 //!
 //! The operators of [`Expr`](expr::Expr) build nodes; expressions written alike are one node. Read `number`
 //! (exact constants), `function` (the elementary functions), `node` and `divisors` (sets of them) first, then
-//! `dag` (the arena) with `normal_form`, `calls`, `value`, `signs` and `regularity`, which treat sums and
-//! products, calls, values in prime fields, signs, and divisors. `graph` owns a `dag` and stays within a
+//! `dag` (the arena) with `normal_form`, `calls`, `fractional`, `value`, `signs` and `regularity`, which treat sums and
+//! products, calls, powers of powers, values in prime fields, signs, and divisors. `graph` owns a `dag` and stays within a
 //! `budget` (`limits`, and for time a `deadline`), and `in_time` knows which symbols are functions of time; `expr` is the handle with which formulas are written;
 //! `subgraph` walks the nodes below some expressions, `queries` answers questions about whole expressions,
 //! `undetermined` holds functions that are not given,
@@ -18,6 +18,7 @@ pub(crate) mod deadline;
 pub(crate) mod divisors;
 pub(crate) mod evaluate;
 pub(crate) mod expr;
+pub(crate) mod fractional;
 pub(crate) mod function;
 pub(crate) mod graph;
 pub(crate) mod in_time;

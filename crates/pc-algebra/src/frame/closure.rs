@@ -194,12 +194,10 @@ impl<'g> Frame<'g> {
         }
         let weights: Vec<Expr<'g>> =
             (0..).zip(self.weights()).map(|(i, w)| if follows[i] { Expr::ZERO } else { w }).collect();
-        let weighted = Matrix::from_fn(b.rows(), k, |i, s| weights[i] * b[(i, s)]);
-        let gram = Matrix::from_fn(k, k, |i, j| graph.dot(b.column(i), weighted.column(j)));
-        let inverted = inverse(graph, &gram)?;
-        Some(Matrix::from_fn(k, b.rows(), |m, i| {
-            graph.dot(inverted.row(m).iter().copied(), weighted.row(i).iter().copied())
-        }))
+        let row = |i: usize| b.nonzero(i).map(|(s, entry)| (s, weights[i] * entry)).collect();
+        let weighted = Matrix::from_rows(k, (0..b.rows()).map(row).collect());
+        let inverted = inverse(graph, &b.transpose().times(graph, &weighted))?;
+        Some(inverted.times(graph, &weighted.transpose()))
     }
 
     /// The weights of the coordinates. Most weights are 1. Coordinates in whose units the velocities are so

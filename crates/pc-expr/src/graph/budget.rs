@@ -94,11 +94,16 @@ impl Meter {
     /// Takes the bytes of a node with this many operands and terms from the remainder, and returns them.
     pub(crate) fn take(&self, operands: usize) -> u64 {
         let bytes = (NODE + OPERAND * operands) as u64;
+        self.charge(bytes);
+        bytes
+    }
+
+    /// Takes bytes from the remainder.
+    pub(crate) fn charge(&self, bytes: u64) {
         let used = self.used.fetch_add(bytes, Ordering::Relaxed) + bytes;
         if used > self.limits.memory {
             self.spend(Spent::Memory { limit: self.limits.memory });
         }
-        bytes
     }
 
     /// Gives back the bytes of dropped nodes.

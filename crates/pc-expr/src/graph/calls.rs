@@ -56,12 +56,14 @@ impl Dag {
         }
     }
 
-    /// x^y: integer powers are products, half-integer powers are powers of a square root.
+    /// x^y: integer powers are products, half-integer powers are powers of a square root, powers of fractional powers are single
+    /// powers.
     fn constant_power(&mut self, x: Atom, y: Number) -> Atom {
         let small = |q: Number| q.as_integer().filter(|e| e.unsigned_abs() <= MAX_EXPONENT);
         if let Some(e) = small(y) {
             return self.powi(x, e);
         }
+        let (x, y) = self.power_of_power(x, y).unwrap_or((x, y));
         if let Some(e) = small(y * Number::integer(2)) {
             let root = self.call(Function::Sqrt, &[x]);
             return self.powi(root, e);

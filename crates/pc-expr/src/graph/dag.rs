@@ -19,6 +19,9 @@ use crate::identity::roots::{Roots, Terms, Value};
 /// The bit shared by all symbols that are confined to the expressions made with them.
 const CONFINED: u64 = 1 << 63;
 
+/// The clock is read once for so many operands: a fraction of a millisecond's work.
+const LOOKS: usize = 256;
+
 #[derive(Debug)]
 pub(crate) struct Dag {
     pub(super) folding: Folding,
@@ -26,8 +29,8 @@ pub(crate) struct Dag {
     meter: Option<Arc<Meter>>,
     /// Bytes taken from the meter.
     taken: u64,
-    /// Counts queries: the clock and the handle for cancelling are read only once every so many queries.
-    asked: u8,
+    /// Counts the operands since the clock and the handle for cancelling were read.
+    worked: usize,
     nodes: Vec<Node>,
     fingerprints: Vec<Fingerprint>,
     /// The values of nodes with roots, as sums of products of roots.
@@ -74,7 +77,7 @@ impl Dag {
             folding,
             meter,
             taken: 0,
-            asked: 0,
+            worked: 0,
             nodes: Vec::new(),
             fingerprints: Vec::new(),
             expansions: FxHashMap::default(),
@@ -229,6 +232,24 @@ impl Dag {
         (node, sign)
     }
 
+    /// Counts work, in operands, and returns whether the budget is spent, for which the clock is read now and then.
+    pub(super) fn is_spent(&mut self, operands: usize) -> bool {
+        self.worked += operands;
+        let looks = self.worked >= LOOKS;
+        if looks {
+            self.worked = 0;
+        }
+        self.meter.as_ref().is_some_and(|meter| meter.is_spent(looks))
+    }
+
+    /// Takes the bytes of something that is kept as long as the expressions from the budget.
+    pub(crate) fn charge(&mut self, bytes: u64) {
+        if let Some(meter) = &self.meter {
+            meter.charge(bytes);
+            self.taken += bytes;
+        }
+    }
+
     /// Interns a candidate. If folding by value is on, constants are recognised, and an existing node of
     /// equal value up to sign is returned if it is at least as good.
     ///
@@ -239,9 +260,7 @@ impl Dag {
     ///
     /// Once the budget is spent, the result is undefined, so that the work ends soon.
     pub(super) fn admit(&mut self, candidate: &Candidate<'_>) -> Atom {
-        self.asked = self.asked.wrapping_add(1);
-        let looks = self.asked == 0;
-        if self.meter.as_ref().is_some_and(|meter| meter.is_spent(looks)) {
+        if self.is_spent(1) {
             return Atom::Constant(Number::UNDEFINED);
         }
         if self.folding == Folding::Structural {
@@ -368,8 +387,10 @@ impl Dag {
             Node::Sum { terms: slice, .. } | Node::Product { factors: slice } => slice.range().len(),
             _ => 0,
         };
+        let terms = operands + value.own_terms();
+        self.worked += terms;
         if let Some(meter) = &self.meter {
-            self.taken += meter.take(operands + value.own_terms());
+            self.taken += meter.take(terms);
         }
         let id = NodeId(self.nodes.len() as u32);
         self.nodes.push(node);

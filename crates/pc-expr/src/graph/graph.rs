@@ -85,6 +85,11 @@ impl Graph {
         result
     }
 
+    /// Takes the bytes of something that is kept beside the expressions from the budget.
+    pub fn charge(&self, bytes: usize) {
+        self.with(|dag| dag.charge(bytes as u64));
+    }
+
     /// # Errors
     /// [`ExprError::Spent`] if the budget is spent.
     pub fn check_budget(&self) -> Result<(), ExprError> {

@@ -25,7 +25,8 @@ impl Dag {
         for &(node, coefficient) in terms {
             self.gather_terms(node, coefficient, &mut gathered, &mut constant);
         }
-        if !constant.is_finite() || gathered.iter().any(|(_, q)| !q.is_finite()) {
+        let spent = self.is_spent(gathered.len());
+        if spent || !constant.is_finite() || gathered.iter().any(|(_, q)| !q.is_finite()) {
             return Atom::Constant(Number::UNDEFINED);
         }
         gathered.sort_unstable_by_key(|&(node, _)| node);
@@ -127,7 +128,7 @@ impl Dag {
         for &(node, exponent) in factors {
             self.gather_factors(node, exponent, &mut gathered, &mut coefficient);
         }
-        if !coefficient.is_finite() {
+        if self.is_spent(gathered.len()) || !coefficient.is_finite() {
             return Atom::Constant(Number::UNDEFINED);
         }
         if coefficient.is_zero() {

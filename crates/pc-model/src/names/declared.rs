@@ -1,7 +1,7 @@
 //! The functions that the text declares.
 
-use pc_expr::Expr;
 use pc_expr::parse::Ast;
+use pc_expr::{Expr, Number};
 
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
@@ -45,6 +45,10 @@ impl<'g, 'd> Scope<'g, 'd> {
         let Some(is) = &function.is else {
             return Ok(self.graph.undetermined(&function.name.text, &values));
         };
+        // Functions of functions are called a number of times that doubles with each of them.
+        if self.graph.check_budget().is_err() {
+            return Ok(Number::UNDEFINED.into());
+        }
         let arguments = function.arguments.iter().map(String::as_str).zip(values).collect();
         let outer = std::mem::replace(&mut self.arguments, arguments);
         let value = self.resolve(is, Stage::Body);

@@ -203,6 +203,7 @@ impl<'g, 'd> Scope<'g, 'd> {
         let text = expression.text.get(span.start..span.end).unwrap_or_default();
         let end = text.char_indices().nth(MOST_SHOWN).map_or(text.len(), |(end, _)| end);
         let (text, context) = (text[..end].to_owned(), self.context.clone());
+        self.graph.charge(size_of::<Written<'_>>() + text.len());
         self.written.push(Written { value, place: expression.place(span), text, context });
     }
 

@@ -31,9 +31,8 @@ pub(super) fn compile(
     let mut context = Context::new();
     let mut frontend = FunctionBuilderContext::new();
     let mut parts = Vec::new();
-    let mut start = 0_usize;
-    loop {
-        let end = plan.steps.len().min(start.saturating_add(plan.chunk));
+    let mut start = 0;
+    for &end in &plan.ends {
         context.func.signature = host.entry_signature();
         let mut b = FunctionBuilder::new(&mut context.func, &mut frontend);
         let memory = Memory::open(&mut b, &constants);
@@ -55,9 +54,6 @@ pub(super) fn compile(
         parts.push(assembly.define(&mut context)?);
         context.clear();
         start = end;
-        if end == plan.steps.len() {
-            break;
-        }
     }
     let entry = if let [whole] = parts[..] {
         whole

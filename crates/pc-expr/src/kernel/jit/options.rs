@@ -13,7 +13,7 @@ pub struct JitOptions {
     pub inline_trig: bool,
     /// Number of values held in machine registers; the others stay in memory.
     pub registers: u32,
-    /// Number of instructions in a function, for programs of more than 50 000 instructions.
+    /// Number of instructions of the processor in a function, for programs of more than 50 000 of them.
     pub chunk: usize,
     /// Number of outputs that go to the memory for outputs; the code writes any others to the start
     /// of its scratch memory.

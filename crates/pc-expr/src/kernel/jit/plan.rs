@@ -11,8 +11,11 @@ use crate::program::program::{Instruction, Program, Register};
 
 use super::options::JitOptions;
 
-/// Programs with more instructions than this are divided into several functions.
+/// Programs of more [work](Step::work) than this are divided into several functions: the time for which registers are allocated
+/// grows faster than the length of a function.
 const WHOLE: usize = 50_000;
+/// Instructions of the processor for the sines and cosines of one or two arguments.
+const CIRCLES: usize = 60;
 /// How many of the circles that follow a circle are examined when a partner is sought for it.
 const PARTNERS: usize = 8;
 
@@ -53,6 +56,14 @@ impl Step {
         }
     }
 
+    /// The number of instructions of the processor, roughly.
+    fn work(&self) -> usize {
+        match self {
+            Step::One(..) => 1,
+            Step::Circles(..) => CIRCLES,
+        }
+    }
+
     /// Calls `f` for every register written.
     pub(super) fn for_each_result(&self, mut f: impl FnMut(Register)) {
         match self {
@@ -74,8 +85,8 @@ pub(super) struct Plan {
     pub(super) waits: Vec<bool>,
     /// For each operand, in the order of the steps.
     pub(super) stays: Vec<Stay>,
-    /// Number of steps in a function.
-    pub(super) chunk: usize,
+    /// The functions into which the steps are divided: for each, the step that follows its last one.
+    pub(super) ends: Vec<usize>,
 }
 
 /// Whether an operand is in a machine register before and after its use.
@@ -94,14 +105,14 @@ impl Plan {
     pub(super) fn new(program: &Program, options: &JitOptions) -> Plan {
         let order = depth_first(program);
         let steps = if options.inline_trig { with_circles(program, &order) } else { plain(program, &order) };
-        let chunk = if steps.len() > WHOLE { options.chunk.max(1) } else { usize::MAX };
+        let ends = divided(&steps, options.chunk);
         let uses = NextUses::of(program, &steps);
         let mut plan = Plan {
             steps,
             last_use: uses.last_use.clone(),
             waits: vec![false; program.registers_len()],
             stays: Vec::with_capacity(uses.after_operand.len()),
-            chunk,
+            ends,
         };
         plan.hold(
             &uses,
@@ -114,8 +125,9 @@ impl Plan {
     fn hold(&mut self, uses: &NextUses, mut held: MachineRegisters, time: usize) {
         held.keep(time, uses.at_start[time]);
         let mut results = uses.after_result.iter();
+        let mut ends = self.ends.iter().peekable();
         for (now, step) in self.steps.iter().enumerate() {
-            if now > 0 && now.is_multiple_of(self.chunk) {
+            if ends.next_if_eq(&&now).is_some() {
                 held.clear();
             }
             step.for_each_operand(|r| {
@@ -136,6 +148,23 @@ impl Plan {
             });
         }
     }
+}
+
+/// The ends of the functions of about `chunk` instructions of the processor into which long programs are divided.
+fn divided(steps: &[Step], chunk: usize) -> Vec<usize> {
+    let mut ends = Vec::new();
+    if steps.iter().map(Step::work).sum::<usize>() > WHOLE {
+        let mut work = 0;
+        for (now, step) in steps.iter().enumerate() {
+            if work >= chunk.max(1) {
+                ends.push(now);
+                work = 0;
+            }
+            work += step.work();
+        }
+    }
+    ends.push(steps.len());
+    ends
 }
 
 /// The next uses of values.
