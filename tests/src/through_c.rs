@@ -7,7 +7,10 @@ use std::fmt::Write as _;
 use std::mem::MaybeUninit;
 use std::ptr;
 
-use pc::{pc_kernel, pc_method, pc_model, pc_solver, pc_solver_options, pc_statistics, pc_status, pc_system};
+use pc::{
+    pc_code, pc_kernel, pc_method, pc_model, pc_solver, pc_solver_options, pc_statistics, pc_status,
+    pc_system,
+};
 
 /// What [`pc::pc_kernel_rhs`] is to an integrator.
 pub type Rhs = unsafe extern "C" fn(f64, *const f64, *mut f64, *mut c_void) -> c_int;
@@ -237,6 +240,74 @@ fn hanging(links: usize) -> Vec<f64> {
     [vec![0.2; links], vec![0.0; links]].concat()
 }
 
+/// A code of libpc.
+#[derive(Debug)]
+pub struct Code(*mut pc_code);
+
+// SAFETY: any number of threads may make systems of one code at the same time.
+unsafe impl Sync for Code {}
+
+impl Code {
+    /// The code of a text; `None` if libpc refuses it.
+    pub fn derived(text: &str) -> Option<Code> {
+        let mut model: *mut pc_model = ptr::null_mut();
+        let mut code = Code(ptr::null_mut());
+        let none = ptr::null_mut();
+        // SAFETY: places for handles, a text with its length, and null where the header allows it; the model is ours and
+        // not used again.
+        let made = unsafe {
+            let made =
+                pc::pc_model_parse(text.as_ptr().cast(), text.len(), ptr::null(), &raw mut model, none)
+                    == pc_status::PC_OK
+                    && pc::pc_code_new(model, ptr::null(), &raw mut code.0, none) == pc_status::PC_OK;
+            pc::pc_model_free(model);
+            made
+        };
+        made.then_some(code)
+    }
+
+    /// The code that was saved in these bytes; `None` if libpc refuses them.
+    pub fn loaded(bytes: &[u8]) -> Option<Code> {
+        let mut code = Code(ptr::null_mut());
+        // SAFETY: bytes with their length, and a place for the handle.
+        let status =
+            unsafe { pc::pc_code_load(bytes.as_ptr().cast(), bytes.len(), &raw mut code.0, ptr::null_mut()) };
+        (status == pc_status::PC_OK).then_some(code)
+    }
+
+    /// The code as bytes; `None` if libpc fails.
+    pub fn saved(&self) -> Option<Vec<u8>> {
+        let (mut data, mut length) = (ptr::null_mut::<c_void>(), 0);
+        // SAFETY: a live code, and places for the memory and its length, which is ours to free after it is copied.
+        unsafe {
+            let status = pc::pc_code_save(self.0, &raw mut data, &raw mut length, ptr::null_mut());
+            let saved = (status == pc_status::PC_OK)
+                .then(|| std::slice::from_raw_parts(data.cast::<u8>(), length).to_vec());
+            pc::pc_bytes_free(data);
+            saved
+        }
+    }
+
+    /// A system of the code with a kernel: what a thread works with.
+    pub fn system(&self) -> Option<Handles> {
+        let mut handles = Handles { system: ptr::null_mut(), kernel: ptr::null_mut() };
+        let none = ptr::null_mut();
+        // SAFETY: a live code, and places for handles.
+        let made = unsafe {
+            pc::pc_system_of_code(self.0, &raw mut handles.system, none) == pc_status::PC_OK
+                && pc::pc_kernel_new(handles.system, &raw mut handles.kernel, none) == pc_status::PC_OK
+        };
+        made.then_some(handles)
+    }
+}
+
+impl Drop for Code {
+    fn drop(&mut self) {
+        // SAFETY: ours, null if it was not made, and not used any more.
+        unsafe { pc::pc_code_free(self.0) };
+    }
+}
+
 /// A system of libpc with a kernel.
 #[derive(Debug)]
 pub struct Handles {
@@ -267,6 +338,18 @@ impl Handles {
             made
         };
         made.then_some(handles)
+    }
+
+    /// The state at which the motion of the text begins; `None` if libpc fails.
+    pub fn start(&self) -> Option<Vec<f64>> {
+        // SAFETY: a live system, an array with its length, and a place for the time.
+        unsafe {
+            let mut y = vec![0.0; pc::pc_system_dim(self.system)];
+            let mut t = 0.0;
+            let status =
+                pc::pc_system_start(self.system, &raw mut t, y.as_mut_ptr(), y.len(), ptr::null_mut());
+            (status == pc_status::PC_OK).then_some(y)
+        }
     }
 
     /// ẏ by the handle of the system, which checks lengths and that nobody changes the parameters meanwhile. Returns

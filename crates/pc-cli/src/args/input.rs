@@ -84,7 +84,8 @@ pub fn keep_apart<'p>(
     model: &Model,
     written: impl IntoIterator<Item = Option<&'p Path>>,
 ) -> Result<(), CliError> {
-    let (own, tables) = (PathBuf::from(&arguments.model), model.document().files());
+    let own = if arguments.model == "-" { apart::STANDARD_INPUT } else { &arguments.model };
+    let (own, tables) = (PathBuf::from(own), model.document().files());
     let read = std::iter::once(&own).chain(&tables).map(PathBuf::as_path).filter(|path| path.is_file());
     let written = written.into_iter().filter_map(target::file);
     Ok(apart::keep_apart(read, written)?)

@@ -1,11 +1,12 @@
 //! `pc import`: models in other formats, as text models.
 
 use std::io::{self, Write};
+use std::path::Path;
 
 use pc_model::Source;
 use pc_model::document::{read_bounded, read_file_bounded};
 use pc_model::import::{ImportOptions, model_of_robot};
-use pc_run::files::apart::keep_apart;
+use pc_run::files::apart::{STANDARD_INPUT, keep_apart};
 use pc_run::files::error::FileError;
 use pc_run::files::target::{Target, file};
 
@@ -25,7 +26,7 @@ pub fn command(arguments: &ImportArguments) -> Result<(), CliError> {
     let place = place
         .map(|(output, place)| place.map_err(|source| FileError::no_place(output, source)))
         .transpose()?;
-    keep_apart(path, place.as_ref().map(Target::path))?;
+    keep_apart([path.unwrap_or(Path::new(STANDARD_INPUT))], place.as_ref().map(Target::path))?;
     let bytes = path.map_or_else(|| read_bounded(io::stdin().lock()), read_file_bounded);
     let bytes = bytes.map_err(|source| CliError::Read { name: name.clone(), source })?;
     let source = match String::from_utf8(bytes) {

@@ -72,6 +72,23 @@ fn what_is_read_is_not_replaced() {
 }
 
 #[test]
+fn what_standard_input_reads_is_not_replaced() {
+    let directory = tempfile::tempdir().unwrap();
+    let file = directory.path().join("m.csv");
+    fs::write(&file, MODEL).unwrap();
+    fs::write(directory.path().join("u.csv"), TABLE).unwrap();
+    for command in ["run - -o m.csv", "equilibria - -o ./m.csv", "import - -o m.csv"] {
+        let input = fs::File::open(&file).unwrap();
+        let mut pc = Command::new(env!("CARGO_BIN_EXE_pc"));
+        let done = pc.args(command.split(' ')).current_dir(directory.path()).stdin(input).output().unwrap();
+        let said = String::from_utf8(done.stderr).unwrap();
+        assert_eq!(done.status.code(), Some(2), "{command}: {said}");
+        assert!(said.contains("m.csv is the file /dev/stdin, which is read"), "{command}: {said}");
+        assert_eq!(fs::read_to_string(&file).unwrap(), MODEL);
+    }
+}
+
+#[test]
 fn two_results_are_two_files() {
     let directory = tempfile::tempdir().unwrap();
     fs::write(directory.path().join("m.toml"), MODEL).unwrap();

@@ -35,7 +35,9 @@ impl Dag {
         symbols: &[NodeId],
         known: &mut FxHashMap<NodeId, Vec<Atom>>,
     ) -> Vec<Atom> {
-        let cone = Cone::below(self, [output]);
+        let Some(cone) = self.cone_within_budget([output]) else {
+            return vec![Atom::Constant(Number::UNDEFINED); symbols.len()];
+        };
         let active = cone.depending_on(self, symbols);
         let mut adjoints: FxHashMap<NodeId, Vec<(Atom, Number)>> = FxHashMap::default();
         if let Atom::Node(root) = output {
@@ -130,7 +132,9 @@ impl Dag {
 
     /// The derivatives of `outputs` when each symbol of `seeds` changes at the rate given with it.
     pub(crate) fn directional(&mut self, outputs: &[Atom], seeds: &[(NodeId, Atom)]) -> Vec<Atom> {
-        let cone = Cone::below(self, outputs.iter().copied());
+        let Some(cone) = self.cone_within_budget(outputs.iter().copied()) else {
+            return vec![Atom::Constant(Number::UNDEFINED); outputs.len()];
+        };
         let moving: Vec<NodeId> = seeds.iter().map(|&(symbol, _)| symbol).collect();
         let active = cone.depending_on(self, &moving);
         let mut rates = Assignment::from_pairs(seeds);

@@ -121,7 +121,9 @@ impl Graph {
 impl Dag {
     /// `outputs` with symbols (or other nodes) replaced, rebuilt bottom-up.
     pub(crate) fn substitute(&mut self, outputs: &[Atom], replacements: &[(NodeId, Atom)]) -> Vec<Atom> {
-        let cone = Cone::below(self, outputs.iter().copied());
+        let Some(cone) = self.cone_within_budget(outputs.iter().copied()) else {
+            return vec![Atom::Constant(Number::UNDEFINED); outputs.len()];
+        };
         let replaced: Vec<NodeId> = replacements.iter().map(|&(node, _)| node).collect();
         let active = cone.depending_on(self, &replaced);
         let mut values = Assignment::from_pairs(replacements);

@@ -233,13 +233,18 @@ impl Dag {
     }
 
     /// Counts work, in operands, and returns whether the budget is spent, for which the clock is read now and then.
-    pub(super) fn is_spent(&mut self, operands: usize) -> bool {
+    pub(crate) fn is_spent(&mut self, operands: usize) -> bool {
         self.worked += operands;
         let looks = self.worked >= LOOKS;
         if looks {
             self.worked = 0;
         }
         self.meter.as_ref().is_some_and(|meter| meter.is_spent(looks))
+    }
+
+    /// Whether the budget is spent by now.
+    pub(crate) fn has_spent(&self) -> bool {
+        self.meter.as_ref().is_some_and(|meter| meter.is_spent(true))
     }
 
     /// Takes the bytes of something that is kept as long as the expressions from the budget.

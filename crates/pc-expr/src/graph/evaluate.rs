@@ -134,12 +134,13 @@ impl Graph {
     /// The values of `outputs`, over any scalar, when the symbols have the values given.
     ///
     /// # Errors
-    /// [`ExprError::UnboundSymbol`] for a symbol without a value.
+    /// [`ExprError::UnboundSymbol`] for a symbol without a value; [`ExprError::Spent`] if the budget is spent.
     pub fn evaluate<'g, S: Scalar>(
         &'g self,
         outputs: &[Expr<'g>],
         values: &[(Expr<'g>, S)],
     ) -> Result<Vec<S>, ExprError> {
+        self.check_budget()?;
         let outputs: Vec<Atom> = outputs.iter().map(|x| x.atom_in(self)).collect();
         let values: Vec<(NodeId, S)> = values.iter().map(|(s, value)| (s.symbol_in(self), *value)).collect();
         self.with(|dag| evaluate(dag, &outputs, &values))

@@ -10,6 +10,17 @@ pub(crate) struct Cone {
     pub(crate) order: Vec<NodeId>,
 }
 
+impl Dag {
+    /// The nodes below `roots`, each counted as work; `None` once the budget is spent.
+    pub(crate) fn cone_within_budget(&mut self, roots: impl IntoIterator<Item = Atom>) -> Option<Cone> {
+        if self.is_spent(1) {
+            return None;
+        }
+        let cone = Cone::below(self, roots);
+        (!self.is_spent(cone.order.len())).then_some(cone)
+    }
+}
+
 impl Cone {
     /// All nodes below `roots`, found without recursion, so that no depth of nesting overflows the stack.
     pub(crate) fn below(dag: &Dag, roots: impl IntoIterator<Item = Atom>) -> Cone {

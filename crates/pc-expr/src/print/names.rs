@@ -271,7 +271,9 @@ impl<'d, 'g> Page<'d, 'g> {
         if self.length(&plain).1 <= self.room && plain.iter().all(|node| self.given.contains_key(node)) {
             return plain; // every line fits
         }
-        let pages = WORTH_A_NAME.iter().map(|&least| self.named(Some(least)));
+        // Once the budget is spent, no page is printed.
+        let pages =
+            WORTH_A_NAME.iter().take_while(|_| !self.dag.has_spent()).map(|&least| self.named(Some(least)));
         pages.chain([plain]).min_by_key(|named| self.length(named).0).unwrap_or_default()
     }
 

@@ -49,6 +49,8 @@ impl Program {
             outputs: Vec::new(),
         };
         graph.with(|dag| Lowering::new(dag, &symbols, &mut program).run(&atoms))?;
+        graph.charge(program.code.len() * size_of::<Instruction>());
+        graph.check_budget()?;
         Ok(program)
     }
 }
@@ -105,6 +107,9 @@ impl<'a> Lowering<'a> {
         self.compositions = compositions(self.dag, &cone);
         let mut registers = Vec::with_capacity(outputs.len());
         for &output in outputs {
+            if self.dag.has_spent() {
+                break;
+            }
             registers.push(match output {
                 Atom::Constant(c) => self.constant(c),
                 Atom::Node(id) => {

@@ -43,18 +43,23 @@ impl EvaluationFailure {
     /// names of unknowns and constraints.
     pub(crate) fn at(self, unknowns: &[String], t: f64, names: &[String], state: &[f64]) -> MechError {
         let state = || names.iter().cloned().zip(state.iter().copied()).collect();
+        // A combination of unknowns, whose pivot may be the one that vanishes, has no name.
+        let name =
+            |index: usize| unknowns.get(index).cloned().unwrap_or_else(|| format!("unknown {}", index + 1));
         match self {
             EvaluationFailure::Pivot { index, pivot } => {
-                let quasi_velocity = unknowns[index].clone();
+                let quasi_velocity = name(index);
                 EvaluationError::SingularMassMatrix { quasi_velocity, pivot, t, state: state() }.into()
             }
             EvaluationFailure::Constraint { index } => {
-                ConstraintError::Singular { constraint: unknowns[index].clone(), t, state: state() }.into()
+                ConstraintError::Singular { constraint: name(index), t, state: state() }.into()
             }
-            EvaluationFailure::NoProjection { unknowns: k } => {
-                ConstraintError::NoProjection { constraints: unknowns[k..].to_vec(), t, state: state() }
-                    .into()
+            EvaluationFailure::NoProjection { unknowns: k } => ConstraintError::NoProjection {
+                constraints: unknowns.iter().skip(k).cloned().collect(),
+                t,
+                state: state(),
             }
+            .into(),
             EvaluationFailure::Departed { constraint } => {
                 ConstraintError::Departed { constraint, t, state: state() }.into()
             }

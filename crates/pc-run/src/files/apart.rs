@@ -6,6 +6,9 @@ use std::path::{Path, PathBuf};
 use crate::files::error::FileError;
 use crate::files::target::end_of_links;
 
+/// Standard input, which leads to the file from which it comes, where the system has a name for it.
+pub const STANDARD_INPUT: &str = "/dev/stdin";
+
 /// What a path leads to, by whatever name and through whatever links.
 #[derive(Debug, PartialEq, Eq)]
 enum Identity {

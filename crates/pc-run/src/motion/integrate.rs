@@ -247,11 +247,16 @@ impl Integration<'_, '_> {
         let fine = again.as_mut().and_then(|flow| {
             fine::table(flow, (plan, &options), statistics.steps, statistics.current_time, observer)
         });
+        let is_cut = again.is_some() && observer.is_stopped();
         if let Some((verification, assembly)) = &mut verification {
             self.verify(verification, assembly, &solved.solution, last.as_ref(), derivatives.as_ref())?;
         }
         let passed_at_start = self.passed_at_start(&solved.steps);
-        let ending = self.ending(solved.solution.ending, solved.error, is_full);
+        let ending = match self.ending(solved.solution.ending, solved.error, is_full) {
+            // The curves between the rows of a whole motion were cut.
+            Ending::Completed | Ending::Event { .. } if is_cut => Ending::Interrupted,
+            ending => ending,
+        };
         let lost = self.lost(&ending, &table, &tolerances, &solved.steps, last.as_ref())?;
         let lost_inertia = self.lost_inertia(&ending)?;
         let Integration { model, facts, flow, plan, .. } = self;

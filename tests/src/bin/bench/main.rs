@@ -4,6 +4,7 @@
 //! of one run mean anything: variants are run in turns, so that whatever slows the machine slows all of them.
 
 mod capi;
+mod codes;
 mod derive;
 mod ensembles;
 mod error;
@@ -55,6 +56,11 @@ const BENCHMARKS: &[Benchmark] = &[
         name: "capi",
         about: "evaluations and integrations through libpc, against those by hand",
         run: capi::run,
+    },
+    Benchmark {
+        name: "codes",
+        about: "a model derived, loaded, and shared by threads, through libpc",
+        run: codes::run,
     },
     Benchmark { name: "start", about: "a whole run of the program `pc`, start to exit", run: start::run },
 ];
