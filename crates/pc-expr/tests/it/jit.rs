@@ -361,6 +361,30 @@ fn long_programs_are_cut_into_functions() {
     }
 }
 
+/// Sines and cosines in line are so much code that far fewer of them make a function too long.
+#[test]
+fn many_circles_are_cut_into_functions() {
+    let graph = Graph::new();
+    let x = graph.symbol("x");
+    let circles = (1..2000).map(|i| (x * f64::from(i)).sin() / f64::from(i) + (x * f64::from(i)).cos());
+    let circles: Vec<Expr<'_>> = circles.collect();
+    let inputs = Inputs { time: None, state: vec![x], parameters: vec![] };
+    let program = Program::new(&graph, &inputs, &[graph.sum(circles)]).unwrap();
+    let mut whole = [0.0];
+    Jit::with_options(&program, &JitOptions { chunk: usize::MAX, ..JitOptions::default() }).unwrap().eval(
+        0.0,
+        &[0.3],
+        &[],
+        &mut whole,
+    );
+    for chunk in [100, 1000] {
+        let mut cut = [0.0];
+        let mut jit = Jit::with_options(&program, &JitOptions { chunk, ..JitOptions::default() }).unwrap();
+        jit.eval(0.0, &[0.3], &[], &mut cut);
+        assert_eq!(cut, whole, "{chunk}");
+    }
+}
+
 #[test]
 fn threads_share_one_entry() {
     let program = long_program(300);

@@ -186,3 +186,37 @@ fn towers_of_roots_stay_small() {
     assert!(value[1..].iter().all(|value| (value / exponent - 1.0).abs() < 1e-13), "{value:?}");
     assert!(graph.len() < 10_000, "{} nodes", graph.len());
 }
+
+/// Both sides are real for x ≥ 0 only. A power of a power that would be real for more x stays as it is.
+#[test]
+fn a_power_of_a_fractional_power_is_one_power() {
+    let graph = Graph::new();
+    let [x, y] = graph.symbols(["x", "y"]);
+    let halves = |x: Expr<'_>| x * x.sqrt();
+    assert_eq!(power(halves(x), 3, 2), power(x, 9, 4));
+    assert_eq!(power(power(x, 9, 4), 3, 2), power(x, 27, 8));
+    assert_eq!(power(power(y, 1, 3), 3, 2), y.sqrt());
+    assert_eq!(power(x.sqrt().sqrt(), 3, 10), power(x, 3, 40));
+    assert_eq!(power(power(x + y, -3, 2), 1, 5), power(x + y, -3, 10));
+    for kept in [power(x.square(), 3, 2), power(x * y.sqrt(), 3, 2), power(power(x, 2, 3), 3, 2)] {
+        let at = |x: Expr<'_>, value: f64| (x, value);
+        let values = graph.evaluate(&[kept], &[at(x, 0.7), at(y, 1.9)]).unwrap();
+        assert!(values[0].is_finite());
+    }
+    assert_ne!(power(x.square(), 3, 2), x.powi(3));
+}
+
+/// Each level of a tower of products of roots would double the work of the next.
+#[test]
+fn a_tower_of_powers_is_short() {
+    let graph = Graph::new();
+    let x = graph.symbol("x");
+    let tower = (0..40).fold(x, |power, _| power.pow(1.1));
+    let slope = tower.derivative(x);
+    assert!(graph.len() < 200, "{} nodes", graph.len());
+    let [value, slope] = graph.evaluate(&[tower, slope], &[(x, 1.01)]).unwrap()[..] else { unreachable!() };
+    let exponent = 1.1f64.powi(40);
+    // Some dozens of roundings of an exponent of 45.
+    assert!((value / 1.01f64.powf(exponent) - 1.0).abs() < 1e-13);
+    assert!((slope / (exponent * 1.01f64.powf(exponent - 1.0)) - 1.0).abs() < 1e-13);
+}

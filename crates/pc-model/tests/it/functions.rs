@@ -1,6 +1,6 @@
 //! `[functions]`: given, or undetermined.
 
-use pc_expr::VectorField as _;
+use pc_expr::{Limits, VectorField as _};
 use pc_mech::Graph;
 use pc_model::{Document, Flow, Model, ModelError, Source, Variables};
 
@@ -121,4 +121,18 @@ fn errors_say_what_would_be_right() {
         })
         .collect();
     insta::assert_snapshot!(said.join("\n"));
+}
+
+/// Functions of functions, each called twice by the next, have 2⁶⁰ calls: the limits hold for them, too.
+#[test]
+fn functions_of_functions_end_at_the_limits() {
+    let next = |i: usize| format!("f{} = {{ of = \"s\", is = \"f{i}(f{i}(s))\" }}\n", i + 1);
+    let chain: String = (0..59).map(next).collect();
+    let text = format!(
+        "[functions]\nf0 = {{ of = \"s\", is = \"1 + s^2\" }}\n{chain}{CENTRAL}potential = \"f59(r)\"\n"
+    );
+    let mut model = Model::new(Document::parse(Source::new("m.toml", text.as_str())).unwrap());
+    model.limit(Limits { memory: 20 << 20, ..Limits::default() });
+    let error = model.derived(|_| Ok::<_, ModelError>(())).unwrap_err();
+    assert!(error.to_string().contains("more memory would be needed than the limit of 20 MiB"), "{error}");
 }
