@@ -17,6 +17,7 @@ use crate::c_libraries::{self, SANITIZED};
 use crate::command::{announce_and_run, build_as_for_tests, cargo, target_directory, workspace_root};
 use crate::error::Error;
 use crate::setup;
+use crate::tools::Machine;
 use interface::Interface;
 use workers::Play;
 
@@ -36,6 +37,9 @@ const SOURCES: [&str; 10] = [
 
 /// Calls unless told: a minute on two cores.
 const CALLS: u64 = 100_000;
+
+/// Calls among the tests.
+const QUICK: u64 = 20_000;
 
 /// What the command line asks for.
 #[derive(Debug, PartialEq, Eq)]
@@ -61,6 +65,22 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), Error> {
     build_as_for_tests(&["--lib"])?;
     play(&wanted, &target_directory()?.join("debug/deps/libpc.so"))
 }
+
+/// Some of it, with the library of the tests.
+///
+/// # Errors
+/// As [`run`].
+pub(crate) fn quick() -> Result<(), Error> {
+    if !Machine::this().has_program("cc") {
+        return Err(Error::Unavailable { what: "there is no `cc`".to_owned() });
+    }
+    let library = target_directory()?.join("debug/deps/libpc.so");
+    if !library.exists() {
+        build_as_for_tests(&["--lib"])?;
+    }
+    play(&Wanted { play: Play { calls: QUICK, ..Play::default() }, release: false, plain: false }, &library)
+}
+
 fn play(wanted: &Wanted, library: &Path) -> Result<(), Error> {
     let place = target_directory()?.join("fuzz-c");
     let interface = Interface::read()?;

@@ -223,6 +223,8 @@ pub unsafe extern "C" fn pc_ensemble_run(
     let run = || {
         // SAFETY: null or a live handle, as the preamble demands.
         let system = unsafe { handle(system, "system") }?;
+        // The observer may use the system, and not free it.
+        let _kept = system.inner.keep();
         let inventory = Arc::clone(&system.inventory);
         let deadline = inventory.deadline();
         let (mut field, events) = {

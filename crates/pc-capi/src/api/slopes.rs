@@ -130,7 +130,9 @@ pub unsafe extern "C" fn pc_system_linearize(
             (c, c_length, rows * dim, "c"),
             (d, d_length, rows * columns, "d"),
         ];
-        separate(&wanted, &[(y, y_length, dim, "y"), (forces, forces_length, external, "forces")])?;
+        // Compared by addresses alone: an index is no longer than a number.
+        let indices = (inputs.as_ptr().cast(), inputs_length, inputs_length, "inputs");
+        separate(&wanted, &[(y, y_length, dim, "y"), (forces, forces_length, external, "forces"), indices])?;
         // SAFETY: as the preamble demands; none that is written shares memory with another.
         let y = unsafe { numbers(y, y_length, dim, "y") }?;
         let forces = match given {

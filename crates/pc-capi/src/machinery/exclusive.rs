@@ -3,7 +3,7 @@
 use std::cell::UnsafeCell;
 use std::marker::PhantomData;
 use std::ops::{Deref, DerefMut};
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::{AtomicU8, AtomicU32, Ordering};
 
 use crate::ffi::call_error::CallError;
 
@@ -17,6 +17,8 @@ const BROKEN: u8 = 2;
 /// noticeable in an evaluation that takes a few nanoseconds.
 pub(crate) struct Exclusive<T> {
     state: AtomicU8,
+    /// The calls that keep the value from being dropped, whether they use it or not.
+    keepers: AtomicU32,
     value: UnsafeCell<T>,
 }
 
@@ -26,9 +28,12 @@ unsafe impl<T: Send> Sync for Exclusive<T> {}
 /// Access to the value, until this is dropped.
 pub(crate) struct Use<'a, T>(&'a Exclusive<T>, PhantomData<&'a mut T>);
 
+/// Keeps the value from being dropped, until this is dropped; others may use it meanwhile.
+pub(crate) struct Kept<'a>(&'a AtomicU32);
+
 impl<T> Exclusive<T> {
     pub(crate) fn new(value: T) -> Exclusive<T> {
-        Exclusive { state: AtomicU8::new(FREE), value: UnsafeCell::new(value) }
+        Exclusive { state: AtomicU8::new(FREE), keepers: AtomicU32::new(0), value: UnsafeCell::new(value) }
     }
 
     /// Gives access to the value, if nobody else is using it.
@@ -41,10 +46,23 @@ impl<T> Exclusive<T> {
         }
     }
 
+    /// Keeps the value from being dropped during a call that others interrupt.
+    pub(crate) fn keep(&self) -> Kept<'_> {
+        self.keepers.fetch_add(1, Ordering::Relaxed);
+        Kept(&self.keepers)
+    }
+
     /// Refuses all further use of the value, so that it can be dropped; returns false if a call is
-    /// using it now.
+    /// using or keeping it now.
     pub(crate) fn close(&self) -> bool {
-        self.state.swap(IN_USE, Ordering::Acquire) != IN_USE
+        // Nobody begins to keep what is being freed, so that the number does not rise meanwhile.
+        self.keepers.load(Ordering::Acquire) == 0 && self.state.swap(IN_USE, Ordering::Acquire) != IN_USE
+    }
+}
+
+impl Drop for Kept<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Release);
     }
 }
 

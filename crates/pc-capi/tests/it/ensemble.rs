@@ -37,7 +37,8 @@ extern "C" fn watch(member: *const pc_member, user: *mut c_void) -> c_int {
         let times = numbers(member.times, member.rows);
         let states = numbers(member.states, member.rows * member.dim);
         watch.seen.push(Seen { status: member.status, message, times, states });
-        // The system can be used meanwhile.
+        // The system can be used meanwhile, and is not freed.
+        pc_system_free(watch.system);
         let mut values = vec![0.0; pc_system_parameter_count(watch.system.as_ref())];
         let (data, length) = (values.as_mut_ptr(), values.len());
         assert_eq!(pc_system_parameters(watch.system, data, length, ptr::null_mut()), PC_OK);

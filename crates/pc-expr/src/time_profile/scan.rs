@@ -26,6 +26,8 @@ const ROUNDING: f64 = 1e-12;
 const SHORTEST: f64 = 1e-13;
 /// The maximum number of evaluations in one query.
 const MOST: u32 = 20_000;
+/// The maximum number after many queries that took all they were allowed.
+const FEWEST: u32 = MOST / 64;
 /// If this many of the shortest pieces contain no jump, the function turns faster than floating-point
 /// times resolve: finding a jump takes about forty evaluations.
 const NOISE: u32 = MOST / 4;
@@ -118,6 +120,9 @@ pub(crate) struct Scan {
     /// Whether a function turns faster than floating-point times resolve; the window is then no longer
     /// examined closely.
     noise: bool,
+    /// The evaluations that a query may take, and how many the last one left.
+    allowed: u32,
+    left: u32,
 }
 
 impl Scan {
@@ -132,6 +137,8 @@ impl Scan {
             features: VecDeque::new(),
             jets: Vec::new(),
             noise: false,
+            allowed: MOST,
+            left: MOST,
         }
     }
 
@@ -181,6 +188,12 @@ impl Scan {
         self.noise
     }
 
+    /// Lets later queries take half as many evaluations if the last one took all, and more again if it did not. Each
+    /// step of a motion that goes wild, as with tolerances that allow anything, would take all of them.
+    pub(crate) fn adapt(&mut self) {
+        self.allowed = if self.left == 0 { self.allowed / 2 } else { 2 * self.allowed }.clamp(FEWEST, MOST);
+    }
+
     /// Whether the interval lies ahead in the window.
     pub(crate) fn covers(&self, t: f64, to: f64) -> bool {
         let direction = if self.end < self.from { -1.0 } else { 1.0 };
@@ -202,22 +215,23 @@ impl Scan {
         let direction = if to < t { -1.0 } else { 1.0 };
         self.from = t;
         self.features.retain(|feature| (feature.t - t) * direction > 0.0);
-        let (enough, mut left) = if self.noise { (true, 0) } else { (enough, MOST) };
+        let enough = enough || self.noise;
+        self.left = if self.noise { 0 } else { self.allowed };
         let mut sharp = 0;
         while let Some(&(a, b)) = self.pieces.last() {
             // A sign that is still unknown may reveal an earlier change.
             let open = self.tracks.iter().any(|track| track.is_open(a));
-            if (a - to) * direction > 0.0 && (!open || left == 0) {
+            if (a - to) * direction > 0.0 && (!open || self.left == 0) {
                 break;
             }
-            if left == 0 && !enough {
+            if self.left == 0 && !enough {
                 return (a, &self.features);
             }
             self.pieces.pop();
             let middle = a + 0.5 * (b - a);
             let indivisible = (b - a).abs() <= self.shortest;
-            let shortest = indivisible || left == 0;
-            left = left.saturating_sub(1);
+            let shortest = indivisible || self.left == 0;
+            self.left = self.left.saturating_sub(1);
             let tracks = &mut self.tracks;
             let jets = &mut self.jets;
             jets.clear();

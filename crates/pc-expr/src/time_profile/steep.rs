@@ -136,8 +136,8 @@ impl SteepFunctions {
     /// The times between `t` and `to`, in order, at which values and rates at these two times may not show what a
     /// function does in between, along the motion.
     ///
-    /// If there are thousands of such times, the list ends at one of them; with `enough`, the remaining time is
-    /// examined coarsely.
+    /// If there are thousands of such times, the list ends at one of them, and sooner if that happens again and again;
+    /// with `enough`, the remaining time is examined coarsely.
     pub fn surprises(
         &mut self,
         (t, to): (f64, f64),
@@ -153,6 +153,7 @@ impl SteepFunctions {
                 part.attend_to(&followed.loud);
                 scan.begin(part, between.0, between.1, along);
                 self.times.add(&mut followed.watched, between, along, enough, &mut self.room);
+                followed.watched.scan.adapt();
             }
         }
         self.times.arrange(direction, self.origin);

@@ -186,6 +186,28 @@ fn peaks_in_the_state_are_found_however_narrow() {
 }
 
 /// Functions without a scale of their own, and those whose change any step feels, are not followed.
+/// Each step of a motion that goes wild would take as many evaluations as a query may.
+#[test]
+fn queries_that_find_too_much_again_and_again_look_at_less() {
+    let program = program(|_, _, y| (-(1e3 * (1e8 * y).sin()).square()).exp());
+    let mut steep = SteepFunctions::of(&[&program], 1, &[]).unwrap();
+    let mut known = |speed: f64| {
+        let motion = PolynomialMotion { start: 0.0, coefficients: &[0.1, speed] };
+        steep.surprises((0.0, 1.0), motion, false).until.unwrap_or(1.0)
+    };
+    let (calm, first) = (known(1e-10), known(1.0));
+    assert!(calm == 1.0 && first < 1.0, "{calm} {first}");
+    let later: Vec<f64> = (0..10).map(|_| known(1.0)).collect();
+    assert!(
+        later.is_sorted_by(|a, b| a >= b) && later[9] < 0.1 * first && later[9] > 0.0,
+        "{first} {later:?}"
+    );
+    for _ in 0..10 {
+        assert_eq!(known(1e-10), 1.0);
+    }
+    assert_eq!(known(1.0), first);
+}
+
 #[test]
 fn gentle_functions_of_the_state_are_not_followed() {
     let gentle: [Pulse; 6] = [

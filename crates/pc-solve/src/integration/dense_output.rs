@@ -30,7 +30,9 @@ impl Segment {
     /// Adds the term of degree k from the derivative of that order at the centre.
     pub(crate) fn push(&mut self, k: u32, derivative: &[f64]) {
         let factor = (1..=k).fold(1.0, |factor, j| factor * (self.end - self.start) / f64::from(j));
-        self.coefficients.extend(derivative.iter().map(|derivative| derivative * factor));
+        // Over so short a piece that a derivative overflows, its term is below rounding.
+        let term = |derivative: &f64| if derivative.is_finite() { derivative * factor } else { 0.0 };
+        self.coefficients.extend(derivative.iter().map(term));
     }
 
     /// Adds the term that makes the polynomial pass through a state at `t`, the start or the end.

@@ -30,7 +30,13 @@ const OWN: [&str; 8] = [
 ];
 
 /// What says that results need not be finite.
-const NOT_FINITE: [&str; 2] = ["not a finite number", "the first of the observables"];
+const NOT_FINITE: [&str; 5] = [
+    "not a finite number",
+    "the first of the observables",
+    "is not finite where",
+    "may be not finite",
+    "like pc_system_observable_jacobian",
+];
 
 /// The most words of a description that are given as texts.
 const WORDS: usize = 64;
@@ -200,6 +206,7 @@ fn kind_of_member(kind: &str, interface: &Interface) -> (&'static str, usize) {
         "uint64_t" => ("MEMBER_WIDE64", 0),
         "double" => ("MEMBER_DOUBLE", 0),
         "const double *" => ("MEMBER_DOUBLES", 0),
+        "const int *" => ("MEMBER_INTS", 0),
         _ => handle.map_or(("MEMBER_OTHER", 0), |handle| ("MEMBER_HANDLE", handle)),
     }
 }

@@ -8,7 +8,7 @@ use super::usual;
 use crate::cargo_tools::CargoTool;
 use crate::command::{announce_and_run, cargo};
 use crate::error::{Error, SKIPPED};
-use crate::{attack, book, c_examples, fmu, python, setup};
+use crate::{attack, book, c_examples, fmu, fuzz_c, python, setup};
 
 const DENY: CargoTool = CargoTool { name: "cargo-deny", version: "~0.20" };
 
@@ -43,9 +43,10 @@ pub(crate) const DOCUMENTATION_TESTS: Stage =
     Stage { title: "documentation tests", usual: 150, packages: &[], work: documentation_tests };
 
 /// What comes after them, and is made of what they have built.
-pub(crate) const AFTER: [Stage; 7] = [
+pub(crate) const AFTER: [Stage; 8] = [
     Stage { title: "attack", usual: 170, packages: &["pc-cli"], work: attack::quick },
     Stage { title: "C examples", usual: 120, packages: &["pc-capi"], work: c_examples::quick },
+    Stage { title: "C calls", usual: 60, packages: &["pc-capi"], work: fuzz_c::quick },
     Stage { title: "documentation", usual: 110, packages: &[], work: documentation },
     Stage { title: "book", usual: 30, packages: &[], work: book::run },
     Stage { title: "licences", usual: 200, packages: &[], work: licences },

@@ -244,9 +244,6 @@ static bool is_moderate_number(double number)
 /* Whether all numbers that a call is given are of a size at which results can be finite. */
 static bool is_moderate(const struct call *call)
 {
-    if (call->first && !is_moderate_number(call->first->span)) {
-        return false;
-    }
     for (int i = 0; i < call->function->count; i++) {
         const struct argument *is = &call->function->arguments[i];
         if (is->kind == NUMBER && !is_moderate_number(call->a[i].number)) {

@@ -15,6 +15,8 @@ static const char *const of_time[] = { "t", "towards", "t_end", "time", NULL };
 static const char *const of_tolerance[] = { "relative", "absolute", "relative_tolerance", "absolute_tolerance", "tolerance", NULL };
 static const char *const of_length[] = { "length", "max_step", "min_step", "initial_step", "step", NULL };
 static const char *const of_part[] = { "accumulation", NULL };
+/* Numbers of pieces of a motion, all of which are integrated. */
+static const char *const of_pieces[] = { "intervals", "transient", NULL };
 /* Numbers that may be as large as one likes, since they only say which; and how often others are 0 to 5. */
 static const char *const which[] = { "index", "event", "parameter", "number", "degree", "threads", "samples", "size",
                                      "column", "row", "output", "input", "force", "constraint", NULL };
@@ -75,7 +77,8 @@ static double draw_number(const struct call *call, const char *name)
     if (odd(call)) {
         const double number = strange[below(sizeof strange / sizeof *strange)];
         const bool far = fabs(number) > 100.0 && isfinite(number);
-        return far && call->first && call->first->unlimited ? 2.0 : number;
+        const bool unlimited = call->unlimited || (call->first && call->first->unlimited);
+        return far && unlimited ? 2.0 : number;
     }
     if (is_one_of(name, of_tolerance)) {
         return pow(10.0, between(-10.0, -3.0));
@@ -119,6 +122,14 @@ static int draw_choice(const struct call *call)
         return far[below(5)];
     }
     return chance(85) ? (int)below(2) : (int)below(5) - 1;
+}
+
+static uint64_t draw_unsigned(const struct call *call, const char *name)
+{
+    if (is_one_of(name, of_pieces)) {
+        return odd(call) ? below(40) : 1 + below(4);
+    }
+    return odd(call) ? UINT_MAX : below(4);
 }
 
 /* A text in room of its own, ended by zero. */
@@ -316,7 +327,9 @@ static size_t length_of(struct call *call, int argument, bool *null)
         return shared;
     }
     size_t length = expected_length(call, argument);
-    if (is->kind != ROOM && has_length && call->function->null && chance(20)) {
+    /* Lists of indices fit together less often than numbers. */
+    const bool of_indices = is->kind == NUMBERS && !is->real;
+    if (is->kind != ROOM && has_length && call->function->null && chance(of_indices ? 60 : 20)) {
         *null = true;
         length = 0;
     } else if (odd(call)) {
@@ -524,6 +537,19 @@ static void set_member(const struct call *call, const struct structure *structur
             memcpy(data + structure->members[member + 1].place, &length, sizeof length);
         }
         break;
+    case MEMBER_INTS:
+        /* What each component has to satisfy; most demands make the start wrong. */
+        if (member + 1 < structure->count && structure->members[member + 1].kind == MEMBER_COUNT &&
+            (odd(call) || chance(15))) {
+            const size_t length = odd(call) ? below(9) : dim_of(call);
+            int *numbers = room(length * sizeof *numbers, true);
+            for (size_t i = 0; i < length; i++) {
+                numbers[i] = chance(80) ? 0 : draw_choice(call);
+            }
+            memcpy(place, &numbers, sizeof numbers);
+            memcpy(data + structure->members[member + 1].place, &length, sizeof length);
+        }
+        break;
     case MEMBER_HANDLE: {
         const struct entry *entry = pick(structure->members[member].of, 0);
         void *handle = entry ? entry->handle : NULL;
@@ -535,14 +561,50 @@ static void set_member(const struct call *call, const struct structure *structur
     }
 }
 
+static int member_named(const struct structure *structure, const char *name, size_t length)
+{
+    for (int i = 0; i < structure->count; i++) {
+        const char *known = structure->members[i].name;
+        if (strlen(known) == length && strncmp(known, name, length) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+static bool gives_options(const struct call *call)
+{
+    return call->given && call->given[strspn(call->given, " ")] == '{';
+}
+
+/* Whether choices are given, `{method 1 iteration 0}`, which are then set. */
+static bool set_given(struct call *call, const struct structure *structure, unsigned char *data)
+{
+    if (!gives_options(call)) {
+        return false;
+    }
+    const char *at = strchr(call->given, '{');
+    for (at++; *at && *at != '}'; at += strspn(at, " ")) {
+        const size_t length = strcspn(at, " }");
+        const int member = member_named(structure, at, length);
+        if (member < 0 || structure->members[member].kind != MEMBER_INT) {
+            fprintf(stderr, "%s has no choice %.*s\n", structure->name, (int)length, at);
+            exit(2);
+        }
+        char *end;
+        const int choice = (int)strtol(at + length, &end, 10);
+        memcpy(data + structure->members[member].place, &choice, sizeof choice);
+        at = end;
+    }
+    call->given = at + (*at == '}');
+    return true;
+}
+
 static void draw_options(struct call *call, int argument)
 {
     const struct structure *structure = &structures[call->function->arguments[argument].of];
-    int steps = -1;
-    for (int i = 0; i < structure->count; i++) {
-        steps = strcmp(structure->members[i].name, "max_steps") == 0 ? i : steps;
-    }
-    if (chance(20)) {
+    const int steps = member_named(structure, "max_steps", strlen("max_steps"));
+    if (!gives_options(call) && chance(20)) {
         call->a[argument].pointer = NULL;
         call->unlimited = call->unlimited || steps >= 0;
         return;
@@ -564,7 +626,8 @@ static void draw_options(struct call *call, int argument)
     } else if (steps >= 0) {
         call->unlimited = true;
     }
-    for (size_t changes = below(call->wild ? 5 : 3); changes > 0; changes--) {
+    const size_t limit = set_given(call, structure, full) ? 1 : call->wild ? 5 : 3;
+    for (size_t changes = below(limit); changes > 0; changes--) {
         set_member(call, structure, 1 + (int)below((size_t)structure->count - 1), full);
     }
     if (odd(call)) {
@@ -603,9 +666,6 @@ static void draw_handle(struct call *call, int argument)
         struct entry *last = latest(is->of);
         entry = last && (last->busy == 0 || last == entry) ? last : entry;
     }
-    if (entry && entry->lent > 0 && is->kind == FREED_HANDLE) {
-        entry = NULL;
-    }
     call->entries[argument] = entry;
     call->a[argument].pointer = entry ? entry->handle : NULL;
     if (!call->first || (entry && call->first->dim == 0 && entry->dim > 0)) {
@@ -632,7 +692,7 @@ static void draw_argument(struct call *call, int argument)
         break;
     case CHOICE: value->choice = next_word(call, word, &null) ? atoi(word) : draw_choice(call); break;
     case UNSIGNED:
-        value->wide = next_word(call, word, &null) ? strtoull(word, NULL, 10) : odd(call) ? UINT_MAX : below(4);
+        value->wide = next_word(call, word, &null) ? strtoull(word, NULL, 10) : draw_unsigned(call, is->name);
         break;
     case FREED_TEXT: {
         const size_t at = below(POOL);
@@ -737,7 +797,7 @@ static void show_options(const struct call *call, int argument)
     log_add("{size %zu", size);
     for (int i = 1; i < structure->count; i++) {
         const unsigned char *place = data + structure->members[i].place;
-        static const size_t sizes[] = { 8, 4, 4, 8, 8, 8, 8, 8 };
+        static const size_t sizes[] = { 8, 4, 4, 8, 8, 8, 8, 8, 8 };
         union {
             int choice;
             uint32_t narrow;
@@ -755,6 +815,7 @@ static void show_options(const struct call *call, int argument)
         case MEMBER_WIDE32: log_add("%u", value.narrow); break;
         case MEMBER_DOUBLE: log_add("%.9g", value.number); break;
         case MEMBER_HANDLE:
+        case MEMBER_INTS:
         case MEMBER_DOUBLES: log_add(value.wide ? "given" : "NULL"); break;
         default: log_add("%llu", (unsigned long long)value.wide); break;
         }

@@ -43,7 +43,7 @@ enum kind {
 
 enum result { STATUS, NAME, SOME, WHOLE, REAL, WIDE, NOTHING };
 
-enum member { MEMBER_COUNT, MEMBER_INT, MEMBER_WIDE32, MEMBER_WIDE64, MEMBER_DOUBLE, MEMBER_DOUBLES, MEMBER_HANDLE, MEMBER_OTHER };
+enum member { MEMBER_COUNT, MEMBER_INT, MEMBER_WIDE32, MEMBER_WIDE64, MEMBER_DOUBLE, MEMBER_DOUBLES, MEMBER_INTS, MEMBER_HANDLE, MEMBER_OTHER };
 
 /* of: the type of the handle, structure or callback, or the bytes of an entry; length: the argument that says how many entries, or
    how many states; fixed: how many, if not 0; power: that of the length of the state, if not 0. */
@@ -143,8 +143,8 @@ uint64_t now(void);
 struct entry {
     void *handle;
     unsigned number;
-    /* The calls that use it now, or how many of these keep it from being freed. */
-    int busy, lent;
+    /* The calls that use it now. */
+    int busy;
     /* Whether its integrations may take very many steps. */
     bool unlimited;
     size_t dim;

@@ -30,7 +30,7 @@ void empty_pools(void)
     for (size_t type = 0; type < handle_type_count; type++) {
         for (size_t i = 0; i < POOL; i++) {
             pools[type][i]->handle = NULL;
-            pools[type][i]->busy = pools[type][i]->lent = 0;
+            pools[type][i]->busy = 0;
         }
     }
     memset(texts, 0, sizeof texts);

@@ -1,6 +1,7 @@
 /*
  * Models and motions that are known to be right: a line is a call and what it is given, in the order of its texts, numbers and
- * lists; `*` is drawn as in other calls, and so is what is not said. A line that begins with `?` is left out half the time. Further
+ * lists; `*` is drawn as in other calls, and so is what is not said; choices among options are said in braces, in the place of
+ * the options. A line that begins with `?` is left out half the time. Further
  * calls of any kind come between them now and then.
  */
 #include "fuzz.h"
@@ -76,18 +77,40 @@ const char *const recipes[] = {
     "pc_code_save\n"
     "pc_code_load\n"
     "pc_system_of_code\n"
+    "pc_system_find_parameter k\n"
+    "pc_system_find_observable energy\n"
     "pc_system_observable_jacobian\n"
     "pc_system_observable_parameter_jacobian\n"
     "pc_system_linearize\n"
-    "pc_system_linearization\n"
+    "pc_system_linearization 0\n"
+    "pc_linearization_name 0 0\n"
+    "?pc_linearization_name 2 1\n"
+    "pc_linearization_matrix 0\n"
+    "?pc_linearization_state\n"
     "pc_system_gravity\n"
     "?pc_system_lyapunov\n"
     "?pc_system_gradient\n"
-    "pc_solver_new\n"
+    "pc_solver_new {method 1}\n"
     "?pc_solver_set_monitor\n"
     "pc_solver_advance 0.5\n"
     "pc_solver_errors\n"
     "pc_solver_reset 0",
+    /* Derivatives by parameters, with the motion and backwards along it. */
+    "pc_model_new sensitive\n"
+    "pc_model_add_parameter k 4\n"
+    "pc_model_add_coordinate x 1\n"
+    "?pc_model_set_start_expression x k/4\n"
+    "pc_model_set_kinetic x'^2/2\n"
+    "pc_model_set_potential k*x^2/2\n"
+    "pc_model_differentiate 1\n"
+    "pc_system_new {form 0}\n"
+    "?pc_system_start_by_parameter 0\n"
+    "pc_system_gradient {method 0} 0 1.5 0 0\n"
+    "pc_solver_new {method 1}\n"
+    "pc_solver_add_sensitivity 0\n"
+    "?pc_solver_add_event mine 0 0\n"
+    "pc_solver_advance 1.5\n"
+    "pc_solver_sensitivity 0",
     /* A force of the program. */
     "pc_model_new forced\n"
     "pc_model_add_coordinate x 1\n"
