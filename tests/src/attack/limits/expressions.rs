@@ -84,7 +84,8 @@ impl<'r> Expressions<'r> {
     }
 
     fn exponent(&mut self) -> &'static str {
-        self.random.pick(EXPONENTS)
+        let exponent: &&str = self.random.pick(EXPONENTS);
+        exponent
     }
 
     /// `step` put into itself, as deep as parentheses go.
