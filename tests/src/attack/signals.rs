@@ -305,7 +305,7 @@ impl Writing {
         let left: Vec<String> = listed(victim)?.difference(&beside).cloned().collect();
         Ok(if ![Some(0), Some(6)].contains(&ended.code) {
             Some(ended.finding(format!("exit code {:?} where nobody reads", ended.code)))
-        } else if !self.1.iter().all(|name| is_known(name)) {
+        } else if !self.1.iter().all(is_known) {
             Some(ended.finding("neither the old file nor a new one, where nobody reads"))
         } else if !left.is_empty() {
             Some(ended.finding(format!("left lying about: {}", left.join(", "))))
