@@ -3,11 +3,16 @@
 //!
 //! In goes the program, out come findings, each with how to repeat it. Read `victim` first (the program, run within limits, and
 //! what it did), then the attacks: `giants` (models whose equations are larger than anything), `texts` (models changed by
-//! chance), `places` (what is no file to write to), `damage` (checkpoints changed by chance), `kills` (ends at any moment).
+//! chance), `limits` (large models within small limits), `places` (what is no file to write to), `overwrites` (results under the
+//! names of what is read), `damage` (checkpoints changed by chance), `kills` (ends at any moment), `signals` (signals, limits on the
+//! size of files and readers that go away, at any moment).
 
 pub mod damage;
 pub mod giants;
 pub mod kills;
+pub mod limits;
+pub mod overwrites;
+pub mod signals;
 pub mod places;
 pub mod texts;
 pub mod victim;

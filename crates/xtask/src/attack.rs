@@ -17,7 +17,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), Error> {
 /// Some rounds of it, on the program of the tests: half a minute on two cores.
 pub(crate) fn quick() -> Result<(), Error> {
     build_as_for_tests(&["--bin", "pc", "--bin", "attack"])?;
-    announce_and_run(Command::new(built("debug")?).args(["--count", "6"]))
+    announce_and_run(Command::new(built("debug")?).args(["--count", "4"]))
 }
 
 fn built(profile: &str) -> Result<PathBuf, Error> {

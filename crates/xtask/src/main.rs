@@ -54,7 +54,8 @@ usage: cargo xtask <command>
                    promises; --table shows the calls of each function, --replay those of one sequence, --release tries the
                    released library, --plain leaves out the sanitizers
   attack [--minutes N | --count N] [--seed S]
-                   run the program on hostile models, files and checkpoints, and kill it; 10 minutes unless told
+                   run the program on hostile models, files and checkpoints, within small limits, and strike it by kills and
+                   signals; 10 minutes unless told
   book             make target/book of the pages in docs by mdbook, which is fetched from PyPI unless it is installed
   header           write include/pc.h from the sources of the C interface
   c-examples       build the examples in C and C++, run them, compare their numbers with those of `pc`, and run them
