@@ -12,7 +12,7 @@ pub mod giants;
 pub mod kills;
 pub mod limits;
 pub mod overwrites;
-pub mod signals;
 pub mod places;
+pub mod signals;
 pub mod texts;
 pub mod victim;
