@@ -268,7 +268,7 @@ impl<'g> Assembler<'g, '_> {
         let value = graph.substitute(&[written.value()], &put)[0];
         let along: Vec<_> =
             frame.coordinates().iter().copied().zip(rates).chain(graph.in_time(frame.time())).collect();
-        let on_velocities = eta.iter().any(|&eta| value.depends_on(eta));
+        let on_velocities = !graph.jacobian(&[value], eta)[0].is_empty();
         let velocity = if on_velocities { value } else { graph.directional(&[value], &along)[0] };
         if written.is_nonlinear() { None } else { affine(graph, velocity, eta) }
     }

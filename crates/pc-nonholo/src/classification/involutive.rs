@@ -24,6 +24,9 @@ pub(crate) fn involutive_closure<'g>(
     let mut next = 0;
     while next < fields.len() && fields.len() <= k {
         for generator in allowed {
+            if graph.check_budget().is_err() {
+                return reached; // the stage of the work reports it
+            }
             let bracket = commutator(system, generator, &fields[next]);
             let along: Along<'g> = rows.iter().map(|row| component(row, &bracket)).collect();
             // A zero that the graph does not recognise is decided numerically.
