@@ -8,13 +8,13 @@ use crate::model::model::Model;
 pub struct NotForced {
     /// The requested name.
     pub name: String,
-    /// The quasi-velocities; the coordinates if none is declared.
+    /// The quasi-velocities; the velocities x' if none is declared.
     pub known: Vec<String>,
 }
 
 impl Model {
     /// Declares that a force computed outside the model, such as that of a controller, acts on a
-    /// quasi-velocity, or on a coordinate if no quasi-velocity is declared. The system then has an [external
+    /// quasi-velocity or, if none is declared, on a velocity x' or its coordinate x. The system then has an [external
     /// force](pc_mech::System::external_forces), and a motion has one more input, which is zero until it is
     /// set, or is [given by a function](pc_mech::Motion::forced).
     ///
@@ -24,7 +24,7 @@ impl Model {
     ///
     /// let text = "coordinates.x = 1.0\nlagrangian.kinetic = \"x'^2\"";
     /// let mut model = Model::new(Document::parse(Source::new("point.toml", text))?);
-    /// model.external_force("x")?;
+    /// model.external_force("x'")?;
     /// let graph = Graph::new();
     /// let assembly = model.assemble(&graph)?;
     /// let flow = Flow::new(&model, &assembly, Variables::QuasiVelocities)?;
@@ -39,11 +39,12 @@ impl Model {
     /// [`NotForced`], which lists the existing names.
     pub fn external_force(&mut self, on: &str) -> Result<(), NotForced> {
         let known = self.forceable();
-        if !known.iter().any(|known| known == on) {
+        let is_it = |known: &&String| *known == on || known.strip_suffix('\'') == Some(on);
+        let Some(on) = known.iter().find(is_it) else {
             return Err(NotForced { name: on.to_owned(), known });
-        }
-        if !self.external.iter().any(|declared| declared == on) {
-            self.external.push(on.to_owned());
+        };
+        if !self.external.contains(on) {
+            self.external.push(on.clone());
         }
         Ok(())
     }
@@ -51,15 +52,13 @@ impl Model {
     /// The quasi-velocities on which external forces act, in the order in which they were declared: `x'` for
     /// a coordinate x.
     pub fn external_forces(&self) -> Vec<String> {
-        let velocities = self.document().quasi_velocities.is_empty();
-        let name = |on: &String| if velocities { format!("{on}'") } else { on.clone() };
-        self.external.iter().map(name).collect()
+        self.external.clone()
     }
 
     fn forceable(&self) -> Vec<String> {
         let document = self.document();
         match document.quasi_velocities.as_slice() {
-            [] => document.coordinates.iter().map(|x| x.name.text.clone()).collect(),
+            [] => document.coordinates.iter().map(|x| format!("{}'", x.name.text)).collect(),
             declared => declared.iter().map(|eta| eta.name.text.clone()).collect(),
         }
     }
