@@ -55,6 +55,17 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#if !defined(PC_API)
+  #if defined(_WIN32) && !defined(PC_STATIC)
+    /* Comes from pc.dll; define PC_STATIC where the static library is linked instead. */
+    #define PC_API __declspec(dllimport)
+  #elif !defined(_WIN32) && defined(__GNUC__)
+    #define PC_API __attribute__((visibility("default")))
+  #else
+    #define PC_API
+  #endif
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -73,6 +84,11 @@ extern "C" {
  * Third number of the header's version.
  */
 #define PC_VERSION_PATCH 0
+
+/**
+ * The header's version as one number, major × 10000 + minor × 100 + patch.
+ */
+#define PC_VERSION_NUMBER 100
 
 /**
  * Version of the binary interface, the number in the name libpc.so.N. A program runs with
@@ -781,75 +797,82 @@ typedef int (*pc_member_observer)(const pc_member *member, void *user);
 /**
  * The version of the library, such as "0.1.0". The text is static.
  */
-const char *pc_version(void);
+PC_API const char *pc_version(void);
+
+/**
+ * The version of the library as one number, such as 100 for 0.1.0: what PC_VERSION_NUMBER is for
+ * the header.
+ */
+PC_API uint32_t pc_version_number(void);
 
 /**
  * The PC_ABI_VERSION of the library that is in use.
  */
-uint32_t pc_abi_version(void);
+PC_API uint32_t pc_abi_version(void);
 
 /**
  * The name of a status, such as "PC_OK"; "unknown status" for any other number. Static.
  */
-const char *pc_status_name(int status);
+PC_API const char *pc_status_name(int status);
 
 /**
  * The status of the failed call, never PC_OK; PC_OK for NULL.
  */
-pc_status pc_error_status(const pc_error *error);
+PC_API pc_status pc_error_status(const pc_error *error);
 
 /**
  * The message, in UTF-8, never NULL; it lives as long as the error. For a model it shows the line
  * at fault and what would be correct, on several lines. Empty for NULL.
  */
-const char *pc_error_message(const pc_error *error);
+PC_API const char *pc_error_message(const pc_error *error);
 
 /**
  * The line of the model text at fault, counted from 1; 0 if there is none, and for NULL.
  */
-size_t pc_error_line(const pc_error *error);
+PC_API size_t pc_error_line(const pc_error *error);
 
 /**
  * The column at which the offending text begins, in characters counted from 1; 0 if there is none,
  * and for NULL.
  */
-size_t pc_error_column(const pc_error *error);
+PC_API size_t pc_error_column(const pc_error *error);
 
 /**
  * The byte at which the offending text begins, counted from 0; 0 if there is none, and for NULL.
  */
-size_t pc_error_offset(const pc_error *error);
+PC_API size_t pc_error_offset(const pc_error *error);
 
 /**
  * The number of bytes of the text at fault; 0 if there is none, and for NULL.
  */
-size_t pc_error_length(const pc_error *error);
+PC_API size_t pc_error_length(const pc_error *error);
 
 /**
  * The code that CVODES returned (cvodes.h), if that is the reason; 0 otherwise, and for NULL.
  */
-int pc_error_integrator_code(const pc_error *error);
+PC_API int pc_error_integrator_code(const pc_error *error);
 
 /**
  * 1 if the status is PC_EVALUATION and evaluation may succeed at a nearby state, so that an
  * integrator should try a smaller step; 0 otherwise, and for NULL.
  */
-int pc_error_is_recoverable(const pc_error *error);
+PC_API int pc_error_is_recoverable(const pc_error *error);
 
 /**
  * Frees an error. NULL is allowed.
  */
-void pc_error_free(pc_error *error);
+PC_API void pc_error_free(pc_error *error);
 
 /**
  * Frees a text that a function of this library returned for the caller to free. NULL is allowed.
  */
-void pc_string_free(char *text);
+PC_API void pc_string_free(char *text);
 
 /**
  * Reads a model from `length` bytes of text, which need no zero at the end. Messages call the
  * model `name`; NULL means "model".
  */
+PC_API
 pc_status pc_model_parse(const char *text,
                          size_t length,
                          const char *name,
@@ -859,7 +882,7 @@ pc_status pc_model_parse(const char *text,
 /**
  * Reads a model from a file.
  */
-pc_status pc_model_from_file(const char *path, pc_model **model, pc_error **error);
+PC_API pc_status pc_model_from_file(const char *path, pc_model **model, pc_error **error);
 
 /**
  * Reads a robot in URDF with macros expanded, in MJCF or in SDF, as a model of bodies on joints.
@@ -868,6 +891,7 @@ pc_status pc_model_from_file(const char *path, pc_model **model, pc_error **erro
  * model cannot express is left out, and said in comments at the head of the text, which
  * pc_model_text gives.
  */
+PC_API
 pc_status pc_model_from_robot(const char *path,
                               int floating,
                               int fix_massless,
@@ -877,56 +901,57 @@ pc_status pc_model_from_robot(const char *path,
 /**
  * Reads a model that comes with the library, such as "heavy-top-lagrange".
  */
-pc_status pc_model_builtin(const char *name, pc_model **model, pc_error **error);
+PC_API pc_status pc_model_builtin(const char *name, pc_model **model, pc_error **error);
 
 /**
  * The number of models that come with the library.
  */
-size_t pc_builtin_count(void);
+PC_API size_t pc_builtin_count(void);
 
 /**
  * The name of a model that comes with the library, counted from 0; NULL beyond the last. Static.
  */
-const char *pc_builtin_name(size_t index);
+PC_API const char *pc_builtin_name(size_t index);
 
 /**
  * Copies a model; either can be changed independently.
  */
-pc_status pc_model_clone(const pc_model *model, pc_model **copy, pc_error **error);
+PC_API pc_status pc_model_clone(const pc_model *model, pc_model **copy, pc_error **error);
 
 /**
  * Frees a model. NULL is allowed.
  */
-void pc_model_free(pc_model *model);
+PC_API void pc_model_free(pc_model *model);
 
 /**
  * Sets a parameter of the model to another value.
  */
-pc_status pc_model_set(pc_model *model, const char *name, double value, pc_error **error);
+PC_API pc_status pc_model_set(pc_model *model, const char *name, double value, pc_error **error);
 
 /**
  * Makes projection keep this integral, or "energy", at its value at the start: after each step of
  * a solver, and in pc_system_project. An unknown name is reported by pc_system_new.
  */
-pc_status pc_model_keep(pc_model *model, const char *integral, pc_error **error);
+PC_API pc_status pc_model_keep(pc_model *model, const char *integral, pc_error **error);
 
 /**
  * Sets whether the start is moved onto the constraints (otherwise a start that violates them is
  * refused). Any value but 0 means yes.
  */
-pc_status pc_model_project_start(pc_model *model, int yes, pc_error **error);
+PC_API pc_status pc_model_project_start(pc_model *model, int yes, pc_error **error);
 
 /**
  * Holds the start value of this coordinate or quasi-velocity fixed while the others are moved to
  * satisfy the constraints. Without pc_model_project_start it has no effect. An unknown name is
  * reported by pc_system_new, with PC_NOT_FOUND.
  */
-pc_status pc_model_hold_start(pc_model *model, const char *name, pc_error **error);
+PC_API pc_status pc_model_hold_start(pc_model *model, const char *name, pc_error **error);
 
 /**
  * Sets whether the reactions of the constraints are observed; the name of each is `λ_` followed by
  * that of its constraint. Any value but 0 means yes.
  */
+PC_API
 pc_status pc_model_observe_reactions(pc_model *model,
                                      int yes,
                                      pc_error **error);
@@ -935,7 +960,7 @@ pc_status pc_model_observe_reactions(pc_model *model,
  * Sets whether systems of the model are derived with their derivatives with respect to parameters,
  * which pc_solver_add_sensitivity needs. Any value but 0 means yes.
  */
-pc_status pc_model_differentiate(pc_model *model, int yes, pc_error **error);
+PC_API pc_status pc_model_differentiate(pc_model *model, int yes, pc_error **error);
 
 /**
  * Gives the text of the model, to be freed with pc_string_free. For a model built by calls it is
@@ -945,7 +970,7 @@ pc_status pc_model_differentiate(pc_model *model, int yes, pc_error **error);
  * pc_model_project_start, pc_model_hold_start, pc_model_observe_reactions, pc_model_differentiate,
  * pc_model_add_external_force, pc_model_give_quasi_velocity, pc_model_add_independent.
  */
-pc_status pc_model_text(const pc_model *model, char **text, pc_error **error);
+PC_API pc_status pc_model_text(const pc_model *model, char **text, pc_error **error);
 
 /**
  * Makes an empty model, to be built by the calls below. Entries of different kinds may be added in
@@ -954,18 +979,19 @@ pc_status pc_model_text(const pc_model *model, char **text, pc_error **error);
  * x, and `t` is the time. The model is read as a whole by pc_model_check and pc_system_new, whose
  * errors name the entry and show its expression.
  */
-pc_status pc_model_new(const char *name, pc_model **model, pc_error **error);
+PC_API pc_status pc_model_new(const char *name, pc_model **model, pc_error **error);
 
 /**
  * Reads the model as a whole: returns PC_OK if all names are known, all expressions are well
  * formed, and the frame and the start are valid. Only pc_system_new shows whether equations can be
  * derived.
  */
-pc_status pc_model_check(const pc_model *model, pc_error **error);
+PC_API pc_status pc_model_check(const pc_model *model, pc_error **error);
 
 /**
  * Adds a parameter with its value, which pc_model_set and pc_system_set_parameter can change.
  */
+PC_API
 pc_status pc_model_add_parameter(pc_model *model,
                                  const char *name,
                                  double value,
@@ -975,6 +1001,7 @@ pc_status pc_model_add_parameter(pc_model *model,
  * Adds a parameter that is an expression in the parameters before it. The new parameter changes
  * with them until it is itself set.
  */
+PC_API
 pc_status pc_model_add_parameter_expression(pc_model *model,
                                             const char *name,
                                             const char *expression,
@@ -985,6 +1012,7 @@ pc_status pc_model_add_parameter_expression(pc_model *model,
  * time, coordinates, velocities and states. The first-order state is integrated with the motion
  * and comes after the velocities in the state; it is not part of the frame.
  */
+PC_API
 pc_status pc_model_add_state(pc_model *model,
                              const char *name,
                              const char *rate,
@@ -996,6 +1024,7 @@ pc_status pc_model_add_state(pc_model *model,
  * bodies are given, as expressions in the parameters and t. Gravity acts on the mass centres of
  * all bodies and is included in the energy.
  */
+PC_API
 pc_status pc_model_set_gravity(pc_model *model,
                                const char *x,
                                const char *y,
@@ -1005,6 +1034,7 @@ pc_status pc_model_set_gravity(pc_model *model,
 /**
  * Adds a name for an expression.
  */
+PC_API
 pc_status pc_model_add_definition(pc_model *model,
                                   const char *name,
                                   const char *expression,
@@ -1013,6 +1043,7 @@ pc_status pc_model_add_definition(pc_model *model,
 /**
  * Adds a coordinate with its value at the start.
  */
+PC_API
 pc_status pc_model_add_coordinate(pc_model *model,
                                   const char *name,
                                   double start,
@@ -1024,6 +1055,7 @@ pc_status pc_model_add_coordinate(pc_model *model,
  * quasi-velocities. A model without quasi-velocities uses the velocities themselves; `name` may
  * then be `x'`, which sets the start value of this velocity.
  */
+PC_API
 pc_status pc_model_add_quasi_velocity(pc_model *model,
                                       const char *name,
                                       const char *definition,
@@ -1034,6 +1066,7 @@ pc_status pc_model_add_quasi_velocity(pc_model *model,
  * Sets the velocity of a coordinate as an expression affine in the quasi-velocities, (3). Call
  * this function for every coordinate, or for none.
  */
+PC_API
 pc_status pc_model_set_kinematics(pc_model *model,
                                   const char *coordinate,
                                   const char *velocity,
@@ -1043,13 +1076,14 @@ pc_status pc_model_set_kinematics(pc_model *model,
  * Sets the brackets of the frame to those of the algebra with this name, such as "so3"; needed
  * only where the frame does not determine them.
  */
-pc_status pc_model_set_algebra(pc_model *model, const char *name, pc_error **error);
+PC_API pc_status pc_model_set_algebra(pc_model *model, const char *name, pc_error **error);
 
 /**
  * Sets the bracket [X_left, X_right], (5), as a linear combination of quasi-velocities, such as
  * "w3"; brackets that are not set are zero. `left` may be "t", for X_0. This is an alternative to
  * pc_model_set_algebra.
  */
+PC_API
 pc_status pc_model_set_bracket(pc_model *model,
                                const char *left,
                                const char *right,
@@ -1060,6 +1094,7 @@ pc_status pc_model_set_bracket(pc_model *model,
  * Adds a constraint: the expression, in coordinates or in velocities, must vanish. If it is not
  * affine in the velocities, declare this with pc_model_set_constraint_kind.
  */
+PC_API
 pc_status pc_model_add_constraint(pc_model *model,
                                   const char *name,
                                   const char *expression,
@@ -1069,26 +1104,33 @@ pc_status pc_model_add_constraint(pc_model *model,
  * Sets the Lagrangian L(t, x, η), which may contain x' too. It cannot be combined with a kinetic
  * or potential energy.
  */
-pc_status pc_model_set_lagrangian(pc_model *model, const char *expression, pc_error **error);
+PC_API
+pc_status pc_model_set_lagrangian(pc_model *model,
+                                  const char *expression,
+                                  pc_error **error);
 
 /**
  * Sets the kinetic energy.
  */
-pc_status pc_model_set_kinetic(pc_model *model, const char *expression, pc_error **error);
+PC_API pc_status pc_model_set_kinetic(pc_model *model, const char *expression, pc_error **error);
 
 /**
  * Sets the potential energy.
  */
-pc_status pc_model_set_potential(pc_model *model, const char *expression, pc_error **error);
+PC_API pc_status pc_model_set_potential(pc_model *model, const char *expression, pc_error **error);
 
 /**
  * Sets a dissipation function R, which gives the forces Q_s = −∂R/∂η_s.
  */
-pc_status pc_model_set_dissipation(pc_model *model, const char *expression, pc_error **error);
+PC_API
+pc_status pc_model_set_dissipation(pc_model *model,
+                                   const char *expression,
+                                   pc_error **error);
 
 /**
  * Adds a force that is conjugate to a quasi-velocity or to a coordinate.
  */
+PC_API
 pc_status pc_model_add_force(pc_model *model,
                              const char *on,
                              const char *expression,
@@ -1097,6 +1139,7 @@ pc_status pc_model_add_force(pc_model *model,
 /**
  * Adds an integral: an expression that should stay constant, observed along the motion.
  */
+PC_API
 pc_status pc_model_add_integral(pc_model *model,
                                 const char *name,
                                 const char *expression,
@@ -1105,6 +1148,7 @@ pc_status pc_model_add_integral(pc_model *model,
 /**
  * Adds an output: an expression observed along the motion.
  */
+PC_API
 pc_status pc_model_add_output(pc_model *model,
                               const char *name,
                               const char *expression,
@@ -1115,13 +1159,18 @@ pc_status pc_model_add_output(pc_model *model,
  * come after all parameters. Forces, rates of states, events, integrals and outputs may contain
  * it; velocities, momenta, constraints and positions of bodies may not.
  */
-pc_status pc_model_add_input(pc_model *model, const char *name, double value, pc_error **error);
+PC_API
+pc_status pc_model_add_input(pc_model *model,
+                             const char *name,
+                             double value,
+                             pc_error **error);
 
 /**
  * Adds an input that is a function of time: `length` values at increasing times, interpolated
  * by "linear", "cubic" or "hold"; NULL for "linear". No step of a solver crosses one of the times.
  * The values of the input come from the table alone.
  */
+PC_API
 pc_status pc_model_add_input_table(pc_model *model,
                                    const char *name,
                                    const double *times,
@@ -1137,6 +1186,7 @@ pc_status pc_model_add_input_table(pc_model *model,
  * that are not given. Unlike other inputs it may appear in velocities, momenta, constraints and
  * positions of bodies. The inputs u' and u'' that follow it in the list of inputs are its rates.
  */
+PC_API
 pc_status pc_model_add_input_curve(pc_model *model,
                                    const char *name,
                                    const double *times,
@@ -1152,6 +1202,7 @@ pc_status pc_model_add_input_curve(pc_model *model,
  * the name of the column of times, NULL for "t" or, if there is no such column, for the first one.
  * The path is relative to the working directory at the time of the call.
  */
+PC_API
 pc_status pc_model_add_input_file(pc_model *model,
                                   const char *name,
                                   const char *path,
@@ -1164,6 +1215,7 @@ pc_status pc_model_add_input_file(pc_model *model,
  * Adds an input as pc_model_add_input_curve does, from the columns of a file: of values, of rates,
  * of accelerations, NULL where these are not given, and of times, as in pc_model_add_input_file.
  */
+PC_API
 pc_status pc_model_add_input_curve_file(pc_model *model,
                                         const char *name,
                                         const char *path,
@@ -1178,6 +1230,7 @@ pc_status pc_model_add_input_curve_file(pc_model *model,
  * mass centre or of a point of the body that is at rest, are expressions in the coordinates.
  * Energy and forces follow from the bodies, so the model needs no Lagrangian.
  */
+PC_API
 pc_status pc_model_add_body(pc_model *model,
                             const char *name,
                             const char *mass,
@@ -1189,6 +1242,7 @@ pc_status pc_model_add_body(pc_model *model,
 /**
  * Sets the force on a body, which acts at the position of the body, in axes fixed in space.
  */
+PC_API
 pc_status pc_model_set_body_force(pc_model *model,
                                   const char *body,
                                   const char *x,
@@ -1199,6 +1253,7 @@ pc_status pc_model_set_body_force(pc_model *model,
 /**
  * Sets the torque on a rigid body, in the axes in which its angular velocity is given.
  */
+PC_API
 pc_status pc_model_set_body_torque(pc_model *model,
                                    const char *body,
                                    const char *x,
@@ -1210,6 +1265,7 @@ pc_status pc_model_set_body_torque(pc_model *model,
  * Sets the angular velocity of a rigid body, in axes of the body. It cannot be combined with
  * pc_model_set_body_rotation.
  */
+PC_API
 pc_status pc_model_set_body_angular_velocity(pc_model *model,
                                              const char *body,
                                              const char *x,
@@ -1221,6 +1277,7 @@ pc_status pc_model_set_body_angular_velocity(pc_model *model,
  * Sets the inertia of a rigid body about its position, in axes of the body: 3 expressions
  * Ixx, Iyy, Izz, or 6, which continue with Ixy, Iyz, Ixz.
  */
+PC_API
 pc_status pc_model_set_body_inertia(pc_model *model,
                                     const char *body,
                                     const char *const *entries,
@@ -1231,6 +1288,7 @@ pc_status pc_model_set_body_inertia(pc_model *model,
  * Sets the rotation of a rigid body: the 9 entries of the matrix R from axes of the body to
  * axes fixed in space, row by row.
  */
+PC_API
 pc_status pc_model_set_body_rotation(pc_model *model,
                                      const char *body,
                                      const char *const *entries,
@@ -1244,6 +1302,7 @@ pc_status pc_model_set_body_rotation(pc_model *model,
  * bodies, start values by pc_model_add_coordinate and pc_model_add_quasi_velocity with the names
  * that the joint gives, such as `NAME` and `NAME'` for a revolute one.
  */
+PC_API
 pc_status pc_model_add_jointed_body(pc_model *model,
                                     const char *name,
                                     const char *parent,
@@ -1253,6 +1312,7 @@ pc_status pc_model_add_jointed_body(pc_model *model,
 /**
  * Sets the mass of a body that is attached by a joint.
  */
+PC_API
 pc_status pc_model_set_body_mass(pc_model *model,
                                  const char *body,
                                  const char *mass,
@@ -1262,6 +1322,7 @@ pc_status pc_model_set_body_mass(pc_model *model,
  * Sets the mass centre of a body that is attached by a joint, in axes of the body and relative to
  * its origin.
  */
+PC_API
 pc_status pc_model_set_body_center(pc_model *model,
                                    const char *body,
                                    const char *x,
@@ -1272,6 +1333,7 @@ pc_status pc_model_set_body_center(pc_model *model,
 /**
  * Sets the point of a joint, in axes of the parent and relative to its origin.
  */
+PC_API
 pc_status pc_model_set_joint_place(pc_model *model,
                                    const char *body,
                                    const char *x,
@@ -1282,6 +1344,7 @@ pc_status pc_model_set_joint_place(pc_model *model,
 /**
  * Sets the axis of a joint, in axes of the joint; `axis` has 3 numbers, of any length but 0.
  */
+PC_API
 pc_status pc_model_set_joint_axis(pc_model *model,
                                   const char *body,
                                   const double *axis,
@@ -1291,6 +1354,7 @@ pc_status pc_model_set_joint_axis(pc_model *model,
  * Sets the two axes of a universal joint, of 3 numbers each: the first is fixed in the parent,
  * the second in the body.
  */
+PC_API
 pc_status pc_model_set_joint_axes(pc_model *model,
                                   const char *body,
                                   const double *first,
@@ -1300,6 +1364,7 @@ pc_status pc_model_set_joint_axes(pc_model *model,
 /**
  * Sets the pitch of a screw joint, a length per radian.
  */
+PC_API
 pc_status pc_model_set_joint_pitch(pc_model *model,
                                    const char *body,
                                    const char *pitch,
@@ -1310,6 +1375,7 @@ pc_status pc_model_set_joint_pitch(pc_model *model,
  * times the other's plus `offset`; null stands for 1 and for 0. It has no quasi-velocity of its
  * own; the name of its coordinate is that of a definition and of an output.
  */
+PC_API
 pc_status pc_model_set_joint_gear(pc_model *model,
                                   const char *body,
                                   const char *followed,
@@ -1321,6 +1387,7 @@ pc_status pc_model_set_joint_gear(pc_model *model,
  * Sets the armature J of a joint with one coordinate x, which adds J x'^2/2 to the kinetic energy:
  * the inertia of a rotor times the square of the gear's ratio.
  */
+PC_API
 pc_status pc_model_set_joint_armature(pc_model *model,
                                       const char *body,
                                       const char *armature,
@@ -1330,6 +1397,7 @@ pc_status pc_model_set_joint_armature(pc_model *model,
  * Adds a spring to a joint with one coordinate x, with the potential energy
  * stiffness (x - rest)^2/2; a null `rest` stands for 0.
  */
+PC_API
 pc_status pc_model_set_joint_spring(pc_model *model,
                                     const char *body,
                                     const char *stiffness,
@@ -1339,6 +1407,7 @@ pc_status pc_model_set_joint_spring(pc_model *model,
 /**
  * Sets the damping d of a joint with one coordinate x: the force -d x'.
  */
+PC_API
 pc_status pc_model_set_joint_damping(pc_model *model,
                                      const char *body,
                                      const char *damping,
@@ -1348,6 +1417,7 @@ pc_status pc_model_set_joint_damping(pc_model *model,
  * Sets the dry friction F of a joint with one coordinate x: the force -F sign(x'), and any force
  * up to F where the joint is at rest.
  */
+PC_API
 pc_status pc_model_set_joint_friction(pc_model *model,
                                       const char *body,
                                       const char *friction,
@@ -1357,6 +1427,7 @@ pc_status pc_model_set_joint_friction(pc_model *model,
  * Sets stops at the ends of the way of a joint with one coordinate: beyond an end by s, they push
  * back with stiffness s + damping s'; a null `damping` stands for 0.
  */
+PC_API
 pc_status pc_model_set_joint_limits(pc_model *model,
                                     const char *body,
                                     const char *lower,
@@ -1371,6 +1442,7 @@ pc_status pc_model_set_joint_limits(pc_model *model,
  * pushed against a stop comes to rest there. It cannot be combined with
  * pc_model_set_joint_limits.
  */
+PC_API
 pc_status pc_model_set_joint_restitution(pc_model *model,
                                          const char *body,
                                          const char *lower,
@@ -1382,6 +1454,7 @@ pc_status pc_model_set_joint_restitution(pc_model *model,
  * Sets the stiction of a joint with friction: at rest, friction holds it up to this force, which
  * is at least that of pc_model_set_joint_friction.
  */
+PC_API
 pc_status pc_model_set_joint_stiction(pc_model *model,
                                       const char *body,
                                       const char *stiction,
@@ -1391,6 +1464,7 @@ pc_status pc_model_set_joint_stiction(pc_model *model,
  * Sets the rotation from the axes of a joint to those of the parent: the 9 entries of its
  * matrix, row by row. It cannot be combined with pc_model_set_joint_turns.
  */
+PC_API
 pc_status pc_model_set_joint_rotation(pc_model *model,
                                       const char *body,
                                       const char *const *entries,
@@ -1402,6 +1476,7 @@ pc_status pc_model_set_joint_rotation(pc_model *model,
  * letter x, y or z for each of the `length` angles; each turn is about an axis as moved by the
  * turns before it.
  */
+PC_API
 pc_status pc_model_set_joint_turns(pc_model *model,
                                    const char *body,
                                    const char *axes,
@@ -1412,6 +1487,7 @@ pc_status pc_model_set_joint_turns(pc_model *model,
 /**
  * Sets names for the coordinates of a joint, in place of the default names of its kind.
  */
+PC_API
 pc_status pc_model_name_joint_coordinates(pc_model *model,
                                           const char *body,
                                           const char *const *names,
@@ -1421,6 +1497,7 @@ pc_status pc_model_name_joint_coordinates(pc_model *model,
 /**
  * Sets names for the quasi-velocities of a joint, in place of the default names of its kind.
  */
+PC_API
 pc_status pc_model_name_joint_quasi_velocities(pc_model *model,
                                                const char *body,
                                                const char *const *names,
@@ -1431,6 +1508,7 @@ pc_status pc_model_name_joint_quasi_velocities(pc_model *model,
  * Adds a point of a body that is attached by a joint, in axes of the body and relative to its
  * origin. In expressions its coordinates are `NAME_x`, `NAME_y`, `NAME_z`.
  */
+PC_API
 pc_status pc_model_add_point(pc_model *model,
                              const char *name,
                              const char *body,
@@ -1444,6 +1522,7 @@ pc_status pc_model_add_point(pc_model *model,
  * rod. `places` has 6 expressions: the point of the first body in its axes, then that of the
  * second.
  */
+PC_API
 pc_status pc_model_add_loop(pc_model *model,
                             const char *name,
                             const char *kind,
@@ -1456,6 +1535,7 @@ pc_status pc_model_add_loop(pc_model *model,
  * Sets the axis of a revolute loop, in axes of the first body and in those of the second, with 3
  * numbers each.
  */
+PC_API
 pc_status pc_model_set_loop_axes(pc_model *model,
                                  const char *name,
                                  const double *first,
@@ -1465,6 +1545,7 @@ pc_status pc_model_set_loop_axes(pc_model *model,
 /**
  * Sets the distance between the two points of a rod.
  */
+PC_API
 pc_status pc_model_set_loop_length(pc_model *model,
                                    const char *name,
                                    const char *length,
@@ -1475,6 +1556,7 @@ pc_status pc_model_set_loop_length(pc_model *model,
  * and the motion rolls or slides. pc_model_set_contact sets the size of the shape, and what else
  * the text may say.
  */
+PC_API
 pc_status pc_model_add_contact(pc_model *model,
                                const char *name,
                                const char *body,
@@ -1487,6 +1569,7 @@ pc_status pc_model_add_contact(pc_model *model,
  * through, with 3; attitude, with 9; keeps, with the value true. The values are expressions,
  * those of an axis numbers.
  */
+PC_API
 pc_status pc_model_set_contact(pc_model *model,
                                const char *name,
                                const char *entry,
@@ -1499,12 +1582,13 @@ pc_status pc_model_set_contact(pc_model *model,
  * Hamilton–Jacobi's equation; pc_system_theory examines the claim, and compares the motion from
  * the start with the one that Jacobi's theorem gives. Motions do not depend on this function.
  */
-pc_status pc_model_set_action(pc_model *model, const char *expression, pc_error **error);
+PC_API pc_status pc_model_set_action(pc_model *model, const char *expression, pc_error **error);
 
 /**
  * Adds a constant of the action, with a value near which the action is defined: if no proof is
  * found that the action solves the equation, the claim is tested numerically near these values.
  */
+PC_API
 pc_status pc_model_add_action_constant(pc_model *model,
                                        const char *name,
                                        double value,
@@ -1513,22 +1597,30 @@ pc_status pc_model_add_action_constant(pc_model *model,
 /**
  * Sets the description of the model.
  */
-pc_status pc_model_set_description(pc_model *model, const char *description, pc_error **error);
+PC_API
+pc_status pc_model_set_description(pc_model *model,
+                                   const char *description,
+                                   pc_error **error);
 
 /**
  * Sets the reference to the source of the model.
  */
-pc_status pc_model_set_reference(pc_model *model, const char *reference, pc_error **error);
+PC_API pc_status pc_model_set_reference(pc_model *model, const char *reference, pc_error **error);
 
 /**
  * Changes the start value of a coordinate, of a quasi-velocity, or of a velocity `x'` where
  * there are no quasi-velocities, to a number.
  */
-pc_status pc_model_set_start(pc_model *model, const char *name, double value, pc_error **error);
+PC_API
+pc_status pc_model_set_start(pc_model *model,
+                             const char *name,
+                             double value,
+                             pc_error **error);
 
 /**
  * Changes a start value to an expression in parameters; otherwise this is like pc_model_set_start.
  */
+PC_API
 pc_status pc_model_set_start_expression(pc_model *model,
                                         const char *name,
                                         const char *expression,
@@ -1538,6 +1630,7 @@ pc_status pc_model_set_start_expression(pc_model *model,
  * Sets the kind of a constraint: "holonomic" or "nonholonomic", which is checked, or
  * "nonlinear" for one that is not affine in the velocities and obeys Chetaev's condition.
  */
+PC_API
 pc_status pc_model_set_constraint_kind(pc_model *model,
                                        const char *constraint,
                                        const char *kind,
@@ -1546,22 +1639,23 @@ pc_status pc_model_set_constraint_kind(pc_model *model,
 /**
  * Sets the time at the start; 0 unless set.
  */
-pc_status pc_model_set_start_time(pc_model *model, double t, pc_error **error);
+PC_API pc_status pc_model_set_start_time(pc_model *model, double t, pc_error **error);
 
 /**
  * Sets the time until which the program `pc` runs the model. This time is written to the text, as
  * are the settings of the next five functions; solvers take pc_solver_options instead.
  */
-pc_status pc_model_set_end_time(pc_model *model, double t, pc_error **error);
+PC_API pc_status pc_model_set_end_time(pc_model *model, double t, pc_error **error);
 
 /**
  * Sets the number of rows, at least 2, that the program `pc` writes.
  */
-pc_status pc_model_set_samples(pc_model *model, size_t samples, pc_error **error);
+PC_API pc_status pc_model_set_samples(pc_model *model, size_t samples, pc_error **error);
 
 /**
  * Sets the tolerances with which the program `pc` runs the model, both positive.
  */
+PC_API
 pc_status pc_model_set_tolerances(pc_model *model,
                                   double relative,
                                   double absolute,
@@ -1571,13 +1665,14 @@ pc_status pc_model_set_tolerances(pc_model *model,
  * Sets the largest length of a step, positive, with which the program `pc` runs the model: an
  * event whose function passes through zero and back within a step is missed.
  */
-pc_status pc_model_set_max_step(pc_model *model, double length, pc_error **error);
+PC_API pc_status pc_model_set_max_step(pc_model *model, double length, pc_error **error);
 
 /**
  * Sets how the program `pc` looks for zeros of event functions: at `samples_per_step` points in
  * each step, at least 1; events whose intervals shrink until the time left is less than
  * `accumulation` of the first interval count as accumulated.
  */
+PC_API
 pc_status pc_model_set_event_search(pc_model *model,
                                     size_t samples_per_step,
                                     double accumulation,
@@ -1587,49 +1682,50 @@ pc_status pc_model_set_event_search(pc_model *model,
  * Sets the method by which the program `pc` runs the model: "auto", "adams", "bdf", "dop853" or
  * "taylor".
  */
-pc_status pc_model_set_method(pc_model *model, const char *method, pc_error **error);
+PC_API pc_status pc_model_set_method(pc_model *model, const char *method, pc_error **error);
 
 /**
  * Sets the form of the equations that the program `pc` integrates: "poincare", "canonical".
  */
-pc_status pc_model_set_form(pc_model *model, const char *form, pc_error **error);
+PC_API pc_status pc_model_set_form(pc_model *model, const char *form, pc_error **error);
 
 /**
  * Makes a handle that can end derivations and integrations.
  */
-pc_status pc_cancel_new(pc_cancel **cancel, pc_error **error);
+PC_API pc_status pc_cancel_new(pc_cancel **cancel, pc_error **error);
 
 /**
  * Ends derivations and integrations with PC_LIMIT: those under way end soon, and later ones as
  * soon as they begin. It takes no lock and allocates nothing: it is the one function that a signal
  * handler may call. NULL is allowed.
  */
-void pc_cancel_request(const pc_cancel *cancel);
+PC_API void pc_cancel_request(const pc_cancel *cancel);
 
 /**
  * Returns 1 after pc_cancel_request, else 0; 0 for NULL.
  */
-int pc_cancel_is_requested(const pc_cancel *cancel);
+PC_API int pc_cancel_is_requested(const pc_cancel *cancel);
 
 /**
  * Frees a handle; systems whose options contain it continue without it. NULL is allowed.
  */
-void pc_cancel_free(pc_cancel *cancel);
+PC_API void pc_cancel_free(pc_cancel *cancel);
 
 /**
  * Sets the options to their defaults. `size` is sizeof(pc_system_options). NULL is allowed.
  */
-void pc_system_options_init(pc_system_options *options, size_t size);
+PC_API void pc_system_options_init(pc_system_options *options, size_t size);
 
 /**
  * Sets the options to their defaults. `size` is sizeof(pc_solver_options). NULL is allowed.
  */
-void pc_solver_options_init(pc_solver_options *options, size_t size);
+PC_API void pc_solver_options_init(pc_solver_options *options, size_t size);
 
 /**
  * Derives and compiles the equations of a model, as pc_system_new does, for any number of systems
  * made by pc_system_of_code. `options` may be NULL.
  */
+PC_API
 pc_status pc_code_new(const pc_model *model,
                       const pc_system_options *options,
                       pc_code **code,
@@ -1638,7 +1734,7 @@ pc_status pc_code_new(const pc_model *model,
 /**
  * Frees a code. NULL is allowed. Its systems stay as they are.
  */
-void pc_code_free(pc_code *code);
+PC_API void pc_code_free(pc_code *code);
 
 /**
  * Makes a system of a code, with the parameters of the model: the data of one thread. Nothing is
@@ -1647,7 +1743,7 @@ void pc_code_free(pc_code *code);
  * for one another, except for such a derivation. Any number of threads may make systems of one
  * code at the same time.
  */
-pc_status pc_system_of_code(const pc_code *code, pc_system **system, pc_error **error);
+PC_API pc_status pc_system_of_code(const pc_code *code, pc_system **system, pc_error **error);
 
 /**
  * Writes a code as bytes, to be freed with pc_bytes_free and read by pc_code_load, possibly in
@@ -1656,7 +1752,7 @@ pc_status pc_system_of_code(const pc_code *code, pc_system **system, pc_error **
  * code: the bytes are the same on every machine. Tables that the model read from files are among
  * them.
  */
-pc_status pc_code_save(const pc_code *code, void **data, size_t *length, pc_error **error);
+PC_API pc_status pc_code_save(const pc_code *code, void **data, size_t *length, pc_error **error);
 
 /**
  * Reads a code that pc_code_save has written; nothing is derived. Returns PC_INVALID_CODE unless
@@ -1664,13 +1760,14 @@ pc_status pc_code_save(const pc_code *code, void **data, size_t *length, pc_erro
  * contain. The hash shows damage, not intent: load no bytes that a stranger may have written.
  * There are no limits on what is derived from this code later.
  */
-pc_status pc_code_load(const void *data, size_t length, pc_code **code, pc_error **error);
+PC_API pc_status pc_code_load(const void *data, size_t length, pc_code **code, pc_error **error);
 
 /**
  * Derives and compiles the equations of a model. `options` may be NULL. This takes from
  * milliseconds to seconds (the latter for a hundred bodies); other functions are fast unless they
  * say that they derive.
  */
+PC_API
 pc_status pc_system_new(const pc_model *model,
                         const pc_system_options *options,
                         pc_system **system,
@@ -1681,86 +1778,88 @@ pc_status pc_system_new(const pc_model *model,
  * exists: that of f, and that of each derivative that the original has evaluated before (the first
  * evaluation of a derivative compiles it).
  */
-pc_status pc_system_clone(const pc_system *system, pc_system **copy, pc_error **error);
+PC_API pc_status pc_system_clone(const pc_system *system, pc_system **copy, pc_error **error);
 
 /**
  * Frees a system. NULL is allowed. It does nothing when called from a function of your program
  * that a call on this system runs.
  */
-void pc_system_free(pc_system *system);
+PC_API void pc_system_free(pc_system *system);
 
 /**
  * The length of the state y: coordinates, quasi-velocities or momenta, first-order states; 0
  * for NULL.
  */
-size_t pc_system_dim(const pc_system *system);
+PC_API size_t pc_system_dim(const pc_system *system);
 
 /**
  * The number of coordinates, which come first in the state; 0 for NULL.
  */
-size_t pc_system_coordinate_count(const pc_system *system);
+PC_API size_t pc_system_coordinate_count(const pc_system *system);
 
 /**
  * The number of first-order states, which come last in the state; 0 for NULL.
  */
-size_t pc_system_state_count(const pc_system *system);
+PC_API size_t pc_system_state_count(const pc_system *system);
 
 /**
  * The number of parameters; 0 for NULL.
  */
-size_t pc_system_parameter_count(const pc_system *system);
+PC_API size_t pc_system_parameter_count(const pc_system *system);
 
 /**
  * The number of observables: the integrals, "energy", the outputs; 0 for NULL.
  */
-size_t pc_system_observable_count(const pc_system *system);
+PC_API size_t pc_system_observable_count(const pc_system *system);
 
 /**
  * The number of observables that should stay constant: the integrals and the energy, which come
  * first; 0 for NULL.
  */
-size_t pc_system_conserved_count(const pc_system *system);
+PC_API size_t pc_system_conserved_count(const pc_system *system);
 
 /**
  * The number of constraints that projection maintains; 0 for NULL.
  */
-size_t pc_system_constraint_count(const pc_system *system);
+PC_API size_t pc_system_constraint_count(const pc_system *system);
 
 /**
  * The number of reactions; 0 without pc_model_observe_reactions, and for NULL.
  */
-size_t pc_system_reaction_count(const pc_system *system);
+PC_API size_t pc_system_reaction_count(const pc_system *system);
 
 /**
  * The name of a component of the state, counted from 0; NULL beyond the last.
  */
-const char *pc_system_name(const pc_system *system, size_t index);
+PC_API const char *pc_system_name(const pc_system *system, size_t index);
 
 /**
  * The name of a parameter, counted from 0; NULL beyond the last.
  */
-const char *pc_system_parameter_name(const pc_system *system, size_t index);
+PC_API const char *pc_system_parameter_name(const pc_system *system, size_t index);
 
 /**
  * The name of an observable, counted from 0; NULL beyond the last.
  */
-const char *pc_system_observable_name(const pc_system *system, size_t index);
+PC_API const char *pc_system_observable_name(const pc_system *system, size_t index);
 
 /**
  * The name of a constraint that projection maintains, counted from 0; NULL beyond the last.
  */
-const char *pc_system_constraint_name(const pc_system *system, size_t index);
+PC_API const char *pc_system_constraint_name(const pc_system *system, size_t index);
 
 /**
  * The name of a reaction, `λ_` followed by the name of its constraint, counted from 0; NULL beyond
  * the last.
  */
+PC_API
 const char *pc_system_reaction_name(const pc_system *system,
                                     size_t index);
 
 /**
  * Writes the time and state from which the model starts. `t` may be NULL.
  */
+PC_API
 pc_status pc_system_start(const pc_system *system,
                           double *t,
                           double *y,
@@ -1774,6 +1873,7 @@ pc_status pc_system_start(const pc_system *system,
  * no less than the rounding error of the largest component. pc_solver_options takes them as
  * absolute_tolerances.
  */
+PC_API
 pc_status pc_system_absolute_tolerances(const pc_system *system,
                                         double relative,
                                         double t_end,
@@ -1785,6 +1885,7 @@ pc_status pc_system_absolute_tolerances(const pc_system *system,
  * Writes the values of all parameters. Where a parameter that is an expression in others has no
  * value, its entry is not a finite number.
  */
+PC_API
 pc_status pc_system_parameters(const pc_system *system,
                                double *values,
                                size_t length,
@@ -1795,6 +1896,7 @@ pc_status pc_system_parameters(const pc_system *system,
  * and solvers and kernels made before keep the values they have. Inputs come after the parameters;
  * an input with a table follows its table whatever it is set to.
  */
+PC_API
 pc_status pc_system_set_parameters(pc_system *system,
                                    const double *values,
                                    size_t length,
@@ -1804,12 +1906,17 @@ pc_status pc_system_set_parameters(pc_system *system,
  * Sets one parameter, by its index; parameters that are expressions in it change with it, unless
  * they have themselves been set. Otherwise this is like pc_system_set_parameters.
  */
-pc_status pc_system_set_parameter(pc_system *system, size_t index, double value, pc_error **error);
+PC_API
+pc_status pc_system_set_parameter(pc_system *system,
+                                  size_t index,
+                                  double value,
+                                  pc_error **error);
 
 /**
  * Writes the index of a component of the state, counted from 0, by its name. Returns PC_NOT_FOUND
  * if no component has this name.
  */
+PC_API
 pc_status pc_system_find(const pc_system *system,
                          const char *name,
                          size_t *index,
@@ -1818,6 +1925,7 @@ pc_status pc_system_find(const pc_system *system,
 /**
  * Writes the index of a parameter or input, counted from 0, by its name, as pc_system_find does.
  */
+PC_API
 pc_status pc_system_find_parameter(const pc_system *system,
                                    const char *name,
                                    size_t *index,
@@ -1826,29 +1934,31 @@ pc_status pc_system_find_parameter(const pc_system *system,
 /**
  * Writes the index of an observable, counted from 0, by its name, as pc_system_find does.
  */
+PC_API
 pc_status pc_system_find_observable(const pc_system *system,
                                     const char *name,
                                     size_t *index,
                                     pc_error **error);
 
 /**
- * Declares that a force computed by a function of yours acts on a quasi-velocity, or on a
- * coordinate if the model declares no quasi-velocities. This force is added to the other forces
- * that act there. The function belongs to the system, not to the model: set it with
- * pc_system_set_force. An unknown name is reported by pc_model_check and pc_system_new.
+ * Declares that a force computed by a function of yours acts on a quasi-velocity or, if the model
+ * declares no quasi-velocities, on the velocity x' of a coordinate x; "x" means the same. This
+ * force is added to the other forces that act there. The function belongs to the system, not to
+ * the model: set it with pc_system_set_force. An unknown name is reported by pc_model_check and
+ * pc_system_new.
  */
-pc_status pc_model_add_external_force(pc_model *model, const char *on, pc_error **error);
+PC_API pc_status pc_model_add_external_force(pc_model *model, const char *on, pc_error **error);
 
 /**
  * The number of external forces; 0 for NULL.
  */
-size_t pc_system_force_count(const pc_system *system);
+PC_API size_t pc_system_force_count(const pc_system *system);
 
 /**
  * The name of the quasi-velocity on which an external force acts, counted from 0; NULL beyond the
  * last.
  */
-const char *pc_system_force_name(const pc_system *system, size_t index);
+PC_API const char *pc_system_force_name(const pc_system *system, size_t index);
 
 /**
  * Sets the function that computes the external forces, all at once: the Q_s of the declared
@@ -1866,6 +1976,7 @@ const char *pc_system_force_name(const pc_system *system, size_t index);
  * when the last handle that shares it is freed or given another function. `destroy` must not use a
  * handle that is being freed.
  */
+PC_API
 pc_status pc_system_set_force(pc_system *system,
                               pc_force_function function,
                               pc_force_jacobian jacobian,
@@ -1880,6 +1991,7 @@ pc_status pc_system_set_force(pc_system *system,
  * model. Each added quasi-velocity is also an output. Errors in its definition are reported by
  * pc_model_check and pc_system_new.
  */
+PC_API
 pc_status pc_model_give_quasi_velocity(pc_model *model,
                                        const char *name,
                                        const char *definition,
@@ -1892,7 +2004,7 @@ pc_status pc_model_give_quasi_velocity(pc_model *model,
  * Without such choices, printed equations and source use the velocities that make them shortest. A
  * wrong choice is reported by pc_system_new.
  */
-pc_status pc_model_add_independent(pc_model *model, const char *name, pc_error **error);
+PC_API pc_status pc_model_add_independent(pc_model *model, const char *name, pc_error **error);
 
 /**
  * Writes the rate f(t, y) of the state to ydot.
@@ -1904,6 +2016,7 @@ pc_status pc_model_add_independent(pc_model *model, const char *name, pc_error *
  * ydot undefined, only if parameters are set during its evaluation, or if it fails while the
  * handle is in use.
  */
+PC_API
 pc_status pc_system_rhs(const pc_system *system,
                         double t,
                         const double *y,
@@ -1915,6 +2028,7 @@ pc_status pc_system_rhs(const pc_system *system,
 /**
  * Writes ∂f/∂y, dim × dim and column-major, so `length` is dim*dim.
  */
+PC_API
 pc_status pc_system_jacobian(const pc_system *system,
                              double t,
                              const double *y,
@@ -1929,6 +2043,7 @@ pc_status pc_system_jacobian(const pc_system *system,
  * `row_indices[column_starts[j + 1]]`. Gives pointers to dim + 1 and `entries` numbers that
  * belong to the system and its copies. Each of the three arguments may be NULL.
  */
+PC_API
 pc_status pc_system_jacobian_pattern(const pc_system *system,
                                      size_t *entries,
                                      const size_t **column_starts,
@@ -1938,6 +2053,7 @@ pc_status pc_system_jacobian_pattern(const pc_system *system,
 /**
  * Writes the entries of ∂f/∂y that pc_system_jacobian_pattern lists, in its order.
  */
+PC_API
 pc_status pc_system_sparse_jacobian(const pc_system *system,
                                     double t,
                                     const double *y,
@@ -1949,6 +2065,7 @@ pc_status pc_system_sparse_jacobian(const pc_system *system,
 /**
  * Writes the product (∂f/∂y) v; all three arrays have the length dim.
  */
+PC_API
 pc_status pc_system_jvp(const pc_system *system,
                         double t,
                         const double *y,
@@ -1966,6 +2083,7 @@ pc_status pc_system_jvp(const pc_system *system,
  * input. Returns PC_UNSUPPORTED if pc_model_differentiate was not called, or if there are external
  * forces.
  */
+PC_API
 pc_status pc_system_parameter_jacobian(const pc_system *system,
                                        double t,
                                        const double *y,
@@ -1979,6 +2097,7 @@ pc_status pc_system_parameter_jacobian(const pc_system *system,
  * derives it, as pc_system_new derives equations, unless f does not contain t. Returns
  * PC_UNSUPPORTED if there are external forces, whose ∂/∂t is unknown, or inputs that have tables.
  */
+PC_API
 pc_status pc_system_time_derivative(const pc_system *system,
                                     double t,
                                     const double *y,
@@ -1993,6 +2112,7 @@ pc_status pc_system_time_derivative(const pc_system *system,
  * at the state of pc_system_keep_from. With neither constraints nor such integrals the state stays
  * as it is.
  */
+PC_API
 pc_status pc_system_project(const pc_system *system,
                             double t,
                             double *y,
@@ -2004,6 +2124,7 @@ pc_status pc_system_project(const pc_system *system,
  * moved onto the constraints, also after parameters are set. Solvers maintain the values at their
  * own start.
  */
+PC_API
 pc_status pc_system_keep_from(pc_system *system,
                               double t,
                               const double *y,
@@ -2017,6 +2138,7 @@ pc_status pc_system_keep_from(pc_system *system,
  * Where an observable has no value, its entry is not a finite number; the same holds for an
  * observable that contains accelerations where external forces cannot be computed.
  */
+PC_API
 pc_status pc_system_observe(const pc_system *system,
                             double t,
                             const double *y,
@@ -2029,6 +2151,7 @@ pc_status pc_system_observe(const pc_system *system,
  * Writes the integrals and the energy at (t, y), as many as pc_system_conserved_count: these are
  * the first of the observables, and should stay constant.
  */
+PC_API
 pc_status pc_system_integrals(const pc_system *system,
                               double t,
                               const double *y,
@@ -2040,6 +2163,7 @@ pc_status pc_system_integrals(const pc_system *system,
 /**
  * Writes the energy y_s η_s − L at (t, y). No function that computes external forces is called.
  */
+PC_API
 pc_status pc_system_energy(const pc_system *system,
                            double t,
                            const double *y,
@@ -2051,6 +2175,7 @@ pc_status pc_system_energy(const pc_system *system,
  * Writes the reactions of the constraints at (t, y), as many as pc_system_reaction_count: each
  * adds its value times the derivative of its constraint with respect to η_s to the force Q_s.
  */
+PC_API
 pc_status pc_system_reactions(const pc_system *system,
                               double t,
                               const double *y,
@@ -2063,6 +2188,7 @@ pc_status pc_system_reactions(const pc_system *system,
  * Writes the residual of each constraint that projection maintains, as many as
  * pc_system_constraint_count.
  */
+PC_API
 pc_status pc_system_constraint_residuals(const pc_system *system,
                                          double t,
                                          const double *y,
@@ -2076,6 +2202,7 @@ pc_status pc_system_constraint_residuals(const pc_system *system,
  * direction, a pc_direction. If `terminal` is not 0, the event ends an integration with PC_EVENT.
  * Simultaneous events are handled in the order in which they were added.
  */
+PC_API
 pc_status pc_model_add_event(pc_model *model,
                              const char *name,
                              const char *when,
@@ -2088,6 +2215,7 @@ pc_status pc_model_add_event(pc_model *model,
  * velocity `x'` called `variable` takes the value of the expression. All resets of an event take
  * effect together and use the state before the event.
  */
+PC_API
 pc_status pc_model_add_event_reset(pc_model *model,
                                    const char *event,
                                    const char *variable,
@@ -2097,34 +2225,35 @@ pc_status pc_model_add_event_reset(pc_model *model,
 /**
  * The number of events of the model; 0 for NULL.
  */
-size_t pc_system_event_count(const pc_system *system);
+PC_API size_t pc_system_event_count(const pc_system *system);
 
 /**
  * The name of an event, counted from 0; NULL beyond the last.
  */
-const char *pc_system_event_name(const pc_system *system, size_t index);
+PC_API const char *pc_system_event_name(const pc_system *system, size_t index);
 
 /**
  * The direction of an event, a pc_direction; PC_BOTH beyond the last. These are the numbers that
  * CVODE's CVodeSetRootDirection takes.
  */
-int pc_system_event_direction(const pc_system *system, size_t index);
+PC_API int pc_system_event_direction(const pc_system *system, size_t index);
 
 /**
  * Returns 1 if an event ends the integration, else 0.
  */
-int pc_system_event_is_terminal(const pc_system *system, size_t index);
+PC_API int pc_system_event_is_terminal(const pc_system *system, size_t index);
 
 /**
  * Returns 1 if an event resets the state, else 0.
  */
-int pc_system_event_resets(const pc_system *system, size_t index);
+PC_API int pc_system_event_resets(const pc_system *system, size_t index);
 
 /**
  * Writes the functions of the events at (t, y), as many as pc_system_event_count: an event
  * occurs where its function passes through zero. Where a function has no value, its entry is not a
  * finite number.
  */
+PC_API
 pc_status pc_system_events(const pc_system *system,
                            double t,
                            const double *y,
@@ -2137,6 +2266,7 @@ pc_status pc_system_events(const pc_system *system,
  * Turns the state y before an event, number `event` counted from 0, into the state after it. An
  * event without resets leaves y unchanged.
  */
+PC_API
 pc_status pc_system_event_reset(const pc_system *system,
                                 size_t event,
                                 double t,
@@ -2150,6 +2280,7 @@ pc_status pc_system_event_reset(const pc_system *system,
  * pc_system_state_count. Rows for multipliers are not part of M. The first call derives M, as
  * pc_system_new derives equations.
  */
+PC_API
 pc_status pc_system_mass_matrix(const pc_system *system,
                                 double t,
                                 const double *y,
@@ -2163,6 +2294,7 @@ pc_status pc_system_mass_matrix(const pc_system *system,
  * pc_system_mass_matrix: all forces and gyroscopic terms, without the reactions that multipliers
  * represent. The first call derives r, as pc_system_new derives equations.
  */
+PC_API
 pc_status pc_system_right_hand_side(const pc_system *system,
                                     double t,
                                     const double *y,
@@ -2179,6 +2311,7 @@ pc_status pc_system_right_hand_side(const pc_system *system,
  * that multipliers hold are part of tau. For bodies on joints tau is found from body to body. The
  * first call derives equations, as pc_system_new does.
  */
+PC_API
 pc_status pc_system_inverse_dynamics(const pc_system *system,
                                      double t,
                                      const double *y,
@@ -2194,6 +2327,7 @@ pc_status pc_system_inverse_dynamics(const pc_system *system,
  * numbers. The first call derives M, as pc_system_new derives equations. Returns PC_EVALUATION
  * where M is singular.
  */
+PC_API
 pc_status pc_system_solve_mass_matrix(const pc_system *system,
                                       double t,
                                       const double *y,
@@ -2209,13 +2343,17 @@ pc_status pc_system_solve_mass_matrix(const pc_system *system,
  * quasi-velocity of the state, then one for each quasi-velocity that constraints make vanish. The
  * first call derives them, as pc_system_new derives equations.
  */
-pc_status pc_system_operator_count(const pc_system *system, size_t *operators, pc_error **error);
+PC_API
+pc_status pc_system_operator_count(const pc_system *system,
+                                   size_t *operators,
+                                   pc_error **error);
 
 /**
  * Writes the structure coefficients of [X_r, X_s] = c_rs^m X_m, (5), at (t, y), for r, s = 0 …
  * K, with 0 for time, and m = 1 … K: c[(r*(K + 1) + s)*K + m - 1], so `length` is (K + 1)*(K +
  * 1)*K. The first call derives them, as pc_system_new derives equations.
  */
+PC_API
 pc_status pc_system_structure_coefficients(const pc_system *system,
                                            double t,
                                            const double *y,
@@ -2230,6 +2368,7 @@ pc_status pc_system_structure_coefficients(const pc_system *system,
  * multipliers, whose reactions are eliminated, the second part is M times the error of η̇; in the
  * canonical form the residual is ẏ − f. The first call derives equations, as pc_system_new does.
  */
+PC_API
 pc_status pc_system_residual(const pc_system *system,
                              double t,
                              const double *y,
@@ -2251,6 +2390,7 @@ pc_status pc_system_residual(const pc_system *system,
  * first call derives C, as pc_system_new derives equations. Returns PC_INCONSISTENT_MODEL where M
  * depends on η.
  */
+PC_API
 pc_status pc_system_coriolis(const pc_system *system,
                              double t,
                              const double *y,
@@ -2267,6 +2407,7 @@ pc_status pc_system_coriolis(const pc_system *system,
  * derives equations. Returns PC_UNSUPPORTED for a model without bodies, and PC_INVALID_MODEL for a
  * body whose angular velocity is given without a rotation.
  */
+PC_API
 pc_status pc_system_centroidal(const pc_system *system,
                                double t,
                                const double *y,
@@ -2280,6 +2421,7 @@ pc_status pc_system_centroidal(const pc_system *system,
  * call derives it, as pc_system_new derives equations. Returns PC_UNSUPPORTED for a model without
  * bodies.
  */
+PC_API
 pc_status pc_system_centre_of_mass(const pc_system *system,
                                    double t,
                                    const double *y,
@@ -2293,6 +2435,7 @@ pc_status pc_system_centre_of_mass(const pc_system *system,
  * more columns a and r: 3 × (k + 2), with k as in pc_system_mass_matrix. Its velocity along fixed
  * axes is J η + a, and its acceleration J η̇ + r. Otherwise like pc_system_centre_of_mass.
  */
+PC_API
 pc_status pc_system_centre_of_mass_jacobian(const pc_system *system,
                                             double t,
                                             const double *y,
@@ -2311,6 +2454,7 @@ pc_status pc_system_centre_of_mass_jacobian(const pc_system *system,
  * points. Returns PC_NOT_FOUND where there is no such body, and PC_INVALID_MODEL where its angular
  * velocity is given without a rotation.
  */
+PC_API
 pc_status pc_system_body_jacobian(const pc_system *system,
                                   double t,
                                   const double *y,
@@ -2332,6 +2476,7 @@ pc_status pc_system_body_jacobian(const pc_system *system,
  * PC_NOT_FOUND where there is no such body, and PC_INVALID_MODEL where its angular velocity is
  * given without a rotation.
  */
+PC_API
 pc_status pc_system_body_pose(const pc_system *system,
                               double t,
                               const double *y,
@@ -2350,6 +2495,7 @@ pc_status pc_system_body_pose(const pc_system *system,
  * the others. With it η̇ = J⁺ (a − bias) gives the point the acceleration a. Otherwise like
  * pc_system_body_jacobian.
  */
+PC_API
 pc_status pc_system_body_bias(const pc_system *system,
                               double t,
                               const double *y,
@@ -2368,6 +2514,7 @@ pc_status pc_system_body_bias(const pc_system *system,
  * those forces of the model that act at rest; external forces of the program, which are not
  * called, count as 0. The first call derives equations, as pc_system_new does.
  */
+PC_API
 pc_status pc_system_gravity(const pc_system *system,
                             double t,
                             const double *y,
@@ -2384,6 +2531,7 @@ pc_status pc_system_gravity(const pc_system *system,
  * as that of a speed at rest, or no value. The first call derives them, as pc_system_new derives
  * equations.
  */
+PC_API
 pc_status pc_system_observable_jacobian(const pc_system *system,
                                         double t,
                                         const double *y,
@@ -2399,6 +2547,7 @@ pc_status pc_system_observable_jacobian(const pc_system *system,
  * others counts as one by itself. Otherwise like pc_system_observable_jacobian; it needs no
  * pc_model_differentiate.
  */
+PC_API
 pc_status pc_system_observable_parameter_jacobian(const pc_system *system,
                                                   double t,
                                                   const double *y,
@@ -2428,6 +2577,7 @@ pc_status pc_system_observable_parameter_jacobian(const pc_system *system,
  * order; pc_system_linearization has the equations in independent components. The first call
  * derives the matrices, as pc_system_new derives equations.
  */
+PC_API
 pc_status pc_system_linearize(const pc_system *system,
                               double t,
                               const double *y,
@@ -2464,6 +2614,7 @@ pc_status pc_system_linearize(const pc_system *system,
  * and PC_UNSUPPORTED where steady states are sought for equations that depend on time, and for
  * other forms of the equations.
  */
+PC_API
 pc_status pc_system_linearization(const pc_system *system,
                                   int about,
                                   double t,
@@ -2481,24 +2632,28 @@ pc_status pc_system_linearization(const pc_system *system,
 /**
  * The number of components, inputs or outputs, according to a pc_linear_part; 0 for NULL.
  */
-size_t pc_linearization_count(const pc_linearization *linearization, int part);
+PC_API size_t pc_linearization_count(const pc_linearization *linearization, int part);
 
 /**
  * The name of a component, input or output, counted from 0, according to a pc_linear_part; an
  * external force has the name of its quasi-velocity. NULL beyond the last.
  */
-const char *pc_linearization_name(const pc_linearization *linearization, int part, size_t index);
+PC_API
+const char *pc_linearization_name(const pc_linearization *linearization,
+                                  int part,
+                                  size_t index);
 
 /**
  * Returns 1 if the state is steady: all rates vanish but those of cyclic coordinates; else 0,
  * and 0 for NULL.
  */
-int pc_linearization_is_steady(const pc_linearization *linearization);
+PC_API int pc_linearization_is_steady(const pc_linearization *linearization);
 
 /**
  * Writes the state of the system about which the equations were linearised: the equilibrium or
  * the steady motion that was found.
  */
+PC_API
 pc_status pc_linearization_state(const pc_linearization *linearization,
                                  double *y,
                                  size_t y_length,
@@ -2508,6 +2663,7 @@ pc_status pc_linearization_state(const pc_linearization *linearization,
  * Writes a matrix, a pc_linear_matrix, column-major; pc_linearization_count gives the numbers of
  * its rows and columns.
  */
+PC_API
 pc_status pc_linearization_matrix(const pc_linearization *linearization,
                                   int matrix,
                                   double *values,
@@ -2517,7 +2673,7 @@ pc_status pc_linearization_matrix(const pc_linearization *linearization,
 /**
  * Frees a linearization. NULL is allowed.
  */
-void pc_linearization_free(pc_linearization *linearization);
+PC_API void pc_linearization_free(pc_linearization *linearization);
 
 /**
  * Writes the value at (t, y) of the Poisson bracket (12), in coordinates and momenta, of two
@@ -2531,6 +2687,7 @@ void pc_linearization_free(pc_linearization *linearization);
  * almost-Poisson bracket of the independent momenta. Each call derives equations, as pc_system_new
  * does.
  */
+PC_API
 pc_status pc_system_bracket(const pc_system *system,
                             const char *f,
                             const char *g,
@@ -2544,6 +2701,7 @@ pc_status pc_system_bracket(const pc_system *system,
  * Writes the state (x, p) with the momenta p_s = ∂L/∂η_s of the state (x, η). The first call
  * derives the transform, as pc_system_new derives equations.
  */
+PC_API
 pc_status pc_system_to_momenta(const pc_system *system,
                                double t,
                                const double *y,
@@ -2556,6 +2714,7 @@ pc_status pc_system_to_momenta(const pc_system *system,
  * Writes the state (x, η) with the quasi-velocities of the state (x, p). The first call derives
  * the transform, as pc_system_new derives equations.
  */
+PC_API
 pc_status pc_system_to_quasi_velocities(const pc_system *system,
                                         double t,
                                         const double *y,
@@ -2571,7 +2730,11 @@ pc_status pc_system_to_quasi_velocities(const pc_system *system,
  * independent velocities. `format` is a pc_format. Parameters have the values of the model. Free
  * the text with pc_string_free.
  */
-pc_status pc_system_print(const pc_system *system, int format, char **text, pc_error **error);
+PC_API
+pc_status pc_system_print(const pc_system *system,
+                          int format,
+                          char **text,
+                          pc_error **error);
 
 /**
  * Writes the equations as C source that does not depend on this library: the text of NAME.h
@@ -2585,6 +2748,7 @@ pc_status pc_system_print(const pc_system *system, int format, char **text, pc_e
  * finite, the source can be compiled with -DNAME_MAIN (in capitals) into a program that integrates
  * from the start of the model to that time. Free both texts with pc_string_free.
  */
+PC_API
 pc_status pc_system_emit_c(const pc_system *system,
                            const char *name,
                            double t_end,
@@ -2603,6 +2767,7 @@ pc_status pc_system_emit_c(const pc_system *system,
  * Parameters have the values of the model. Everything is derived again, which takes longer than
  * pc_system_print. Free the text with pc_string_free.
  */
+PC_API
 pc_status pc_system_theory(const pc_system *system,
                            int format,
                            size_t degree,
@@ -2619,6 +2784,7 @@ pc_status pc_system_theory(const pc_system *system,
  * momenta p_x. `format` is a pc_format. Parameters have the values of the model. Everything is
  * derived again. Free the text with pc_string_free.
  */
+PC_API
 pc_status pc_system_canonical_variables(const pc_system *system,
                                         int format,
                                         const char *const *names,
@@ -2638,12 +2804,17 @@ pc_status pc_system_canonical_variables(const pc_system *system,
  * PC_UNSUPPORTED if there is no second derivation for this model. The call takes as long as
  * pc_system_new.
  */
-pc_status pc_system_verify(const pc_system *system, size_t states, char **text, pc_error **error);
+PC_API
+pc_status pc_system_verify(const pc_system *system,
+                           size_t states,
+                           char **text,
+                           pc_error **error);
 
 /**
  * As pc_system_verify, but at one state of the system, such as that of a solver: its time, and the
  * state that pc_solver_advance has written.
  */
+PC_API
 pc_status pc_system_verify_at(const pc_system *system,
                               double t,
                               const double *y,
@@ -2654,16 +2825,17 @@ pc_status pc_system_verify_at(const pc_system *system,
 /**
  * Makes a kernel of the system with its current parameters.
  */
-pc_status pc_kernel_new(const pc_system *system, pc_kernel **kernel, pc_error **error);
+PC_API pc_status pc_kernel_new(const pc_system *system, pc_kernel **kernel, pc_error **error);
 
 /**
  * Frees a kernel. NULL is allowed.
  */
-void pc_kernel_free(pc_kernel *kernel);
+PC_API void pc_kernel_free(pc_kernel *kernel);
 
 /**
  * Sets all parameters of a kernel, in the order of pc_system_parameter_name.
  */
+PC_API
 pc_status pc_kernel_set_parameters(pc_kernel *kernel,
                                    const double *values,
                                    size_t length,
@@ -2677,6 +2849,7 @@ pc_status pc_kernel_set_parameters(pc_kernel *kernel,
  * step helps. pc_system_rhs at the same (t, y) says why. It has the form of the functions that
  * GSL's odeiv2 takes, with the kernel as `params`.
  */
+PC_API
 int pc_kernel_rhs(double t,
                   const double *y,
                   double *ydot,
@@ -2686,6 +2859,7 @@ int pc_kernel_rhs(double t,
  * Writes ∂f/∂y, dim × dim and column-major; otherwise it is like pc_kernel_rhs. The first call
  * compiles it.
  */
+PC_API
 int pc_kernel_jacobian(double t,
                        const double *y,
                        double *jacobian,
@@ -2697,12 +2871,17 @@ int pc_kernel_jacobian(double t,
  * some states, whose rates are then NaN; it returns −1 at a state where no step helps, and does
  * not write the rates of the states after it.
  */
-int pc_kernel_rhs_many(double t, const double *states, size_t count, double *rates, void *kernel);
+PC_API
+int pc_kernel_rhs_many(double t,
+                       const double *states,
+                       size_t count,
+                       double *rates,
+                       void *kernel);
 
 /**
  * The dimension of a kernel's state; 0 for NULL.
  */
-size_t pc_kernel_dim(const pc_kernel *kernel);
+PC_API size_t pc_kernel_dim(const pc_kernel *kernel);
 
 /**
  * Makes a solver that integrates the system from the state y at the time t, with its current
@@ -2712,6 +2891,7 @@ size_t pc_kernel_dim(const pc_kernel *kernel);
  * where one occurs, the state is reset as the model says, and a terminal event ends the call with
  * PC_EVENT.
  */
+PC_API
 pc_status pc_solver_new(const pc_system *system,
                         const pc_solver_options *options,
                         double t,
@@ -2724,7 +2904,7 @@ pc_status pc_solver_new(const pc_system *system,
  * Frees a solver. NULL is allowed. It does nothing when called from an observer or function of
  * this solver.
  */
-void pc_solver_free(pc_solver *solver);
+PC_API void pc_solver_free(pc_solver *solver);
 
 /**
  * Makes a solver continue with the current parameters and inputs of the system: it restarts
@@ -2732,7 +2912,10 @@ void pc_solver_free(pc_solver *solver);
  * pc_solver_advance. The system must be that of the solver, or one of the same model. Returns
  * PC_UNSUPPORTED if the solver has events added by pc_solver_add_event.
  */
-pc_status pc_solver_take_parameters(pc_solver *solver, const pc_system *system, pc_error **error);
+PC_API
+pc_status pc_solver_take_parameters(pc_solver *solver,
+                                    const pc_system *system,
+                                    pc_error **error);
 
 /**
  * Integrates to the time t, in the direction of the first step, and writes the state there.
@@ -2741,6 +2924,7 @@ pc_status pc_solver_take_parameters(pc_solver *solver, const pc_system *system, 
  * pc_solver_time and pc_solver_state give the time and state that were reached. PC_LIMIT is such a
  * failure; it is due to the time limit or the pc_cancel of the system's options.
  */
+PC_API
 pc_status pc_solver_advance(pc_solver *solver,
                             double t,
                             double *y,
@@ -2752,6 +2936,7 @@ pc_status pc_solver_advance(pc_solver *solver,
  * writes the time at its end, which may lie beyond `towards`, and the state there; both are also
  * written when PC_EVENT or PC_STOPPED is returned.
  */
+PC_API
 pc_status pc_solver_step(pc_solver *solver,
                          double towards,
                          double *t,
@@ -2765,6 +2950,7 @@ pc_status pc_solver_step(pc_solver *solver,
  * the observer stops it. At the time of an event the observer receives the state after the event;
  * at a terminal event the observer is called for the last time, and PC_EVENT is returned.
  */
+PC_API
 pc_status pc_solver_run(pc_solver *solver,
                         const double *times,
                         size_t times_length,
@@ -2775,12 +2961,16 @@ pc_status pc_solver_run(pc_solver *solver,
 /**
  * Writes the current time of the integration.
  */
-pc_status pc_solver_time(const pc_solver *solver, double *t, pc_error **error);
+PC_API pc_status pc_solver_time(const pc_solver *solver, double *t, pc_error **error);
 
 /**
  * Writes the current state of the integration.
  */
-pc_status pc_solver_state(const pc_solver *solver, double *y, size_t y_length, pc_error **error);
+PC_API
+pc_status pc_solver_state(const pc_solver *solver,
+                          double *y,
+                          size_t y_length,
+                          pc_error **error);
 
 /**
  * Puts a solver at the state y and the time t, as a new solver would be that pc_solver_new makes
@@ -2789,6 +2979,7 @@ pc_status pc_solver_state(const pc_solver *solver, double *y, size_t y_length, p
  * observers, sensitivities with their starts, and the parameters that the solver has, stay.
  * After a failure the solver is as it was.
  */
+PC_API
 pc_status pc_solver_reset(pc_solver *solver,
                           double t,
                           const double *y,
@@ -2803,6 +2994,7 @@ pc_status pc_solver_reset(pc_solver *solver,
  * `monitor` is NULL, else when another monitor takes its place or the solver is freed. `destroy`
  * must not use the solver while the solver is being freed.
  */
+PC_API
 pc_status pc_solver_set_monitor(pc_solver *solver,
                                 pc_monitor monitor,
                                 void *user,
@@ -2817,6 +3009,7 @@ pc_status pc_solver_set_monitor(pc_solver *solver,
  * PC_AUTO have estimates of each component; for other steps the errors are refused with
  * PC_UNSUPPORTED. Before the first step they are refused with PC_INVALID_ARGUMENT.
  */
+PC_API
 pc_status pc_solver_errors(const pc_solver *solver,
                            double *weights,
                            size_t weights_length,
@@ -2829,6 +3022,7 @@ pc_status pc_solver_errors(const pc_solver *solver,
  * for none. `user` must stay valid until another observer is set or the solver is freed. The
  * observer is called during the calls that integrate, on their thread.
  */
+PC_API
 pc_status pc_solver_observe_events(pc_solver *solver,
                                    pc_event_observer observer,
                                    void *user,
@@ -2840,6 +3034,7 @@ pc_status pc_solver_observe_events(pc_solver *solver,
  * when another observer takes its place or the solver is freed. `destroy` must not use the solver
  * while the solver is being freed.
  */
+PC_API
 pc_status pc_solver_set_event_observer(pc_solver *solver,
                                        pc_event_observer observer,
                                        void *user,
@@ -2856,6 +3051,7 @@ pc_status pc_solver_set_event_observer(pc_solver *solver,
  * `destroy`, unless NULL, is called with `user` exactly once: by this call if it fails, else by
  * pc_solver_free. `destroy` must not use the solver.
  */
+PC_API
 pc_status pc_solver_add_event(pc_solver *solver,
                               const char *name,
                               int direction,
@@ -2869,16 +3065,17 @@ pc_status pc_solver_add_event(pc_solver *solver,
 /**
  * The number of events that a solver follows: those of the model, then those added; 0 for NULL.
  */
-size_t pc_solver_event_count(const pc_solver *solver);
+PC_API size_t pc_solver_event_count(const pc_solver *solver);
 
 /**
  * The name of an event, counted from 0; NULL beyond the last.
  */
-const char *pc_solver_event_name(const pc_solver *solver, size_t index);
+PC_API const char *pc_solver_event_name(const pc_solver *solver, size_t index);
 
 /**
  * Writes the number of times an event has occurred since the solver was made.
  */
+PC_API
 pc_status pc_solver_event_occurrences(const pc_solver *solver,
                                       size_t event,
                                       uint64_t *occurrences,
@@ -2889,6 +3086,7 @@ pc_status pc_solver_event_occurrences(const pc_solver *solver,
  * has not occurred. Only the last occurrence is recorded; an observer sees all of them. `before`
  * and `after` may be NULL, of length 0.
  */
+PC_API
 pc_status pc_solver_last_occurrence(const pc_solver *solver,
                                     size_t event,
                                     double *t,
@@ -2902,7 +3100,10 @@ pc_status pc_solver_last_occurrence(const pc_solver *solver,
  * Writes the number of the terminal event that ended the last call that integrated; returns
  * PC_NOT_FOUND if none did.
  */
-pc_status pc_solver_terminal_event(const pc_solver *solver, size_t *event, pc_error **error);
+PC_API
+pc_status pc_solver_terminal_event(const pc_solver *solver,
+                                   size_t *event,
+                                   pc_error **error);
 
 /**
  * Writes the derivative of the start of the model with respect to parameter number `parameter`,
@@ -2910,6 +3111,7 @@ pc_status pc_solver_terminal_event(const pc_solver *solver, size_t *event, pc_er
  * Returns PC_INCONSISTENT_MODEL where there is no start for nearby values of the parameter, for an
  * input with a table, and for a parameter that is an expression in others.
  */
+PC_API
 pc_status pc_system_start_by_parameter(const pc_system *system,
                                        size_t parameter,
                                        double *column,
@@ -2926,6 +3128,7 @@ pc_status pc_system_start_by_parameter(const pc_system *system,
  * input with a table, the sensitivity is the derivative with respect to a shift of all values of
  * the table.
  */
+PC_API
 pc_status pc_solver_add_sensitivity(pc_solver *solver,
                                     size_t parameter,
                                     const double *start,
@@ -2936,6 +3139,7 @@ pc_status pc_solver_add_sensitivity(pc_solver *solver,
  * Writes sensitivity number `number`, counted from 0 in the order in which sensitivities were
  * added, at the time of the solver; it has the length of the state.
  */
+PC_API
 pc_status pc_solver_sensitivity(const pc_solver *solver,
                                 size_t number,
                                 double *column,
@@ -2949,6 +3153,7 @@ pc_status pc_solver_sensitivity(const pc_solver *solver,
  * is no such step before the first step or just after a reset. y satisfies the constraints; its
  * derivatives are those of the polynomial.
  */
+PC_API
 pc_status pc_solver_interpolate(pc_solver *solver,
                                 double t,
                                 unsigned int derivative,
@@ -2962,13 +3167,18 @@ pc_status pc_solver_interpolate(pc_solver *solver,
  * dim numbers for each internal step. `dense` is also made when PC_EVENT or PC_STOPPED is
  * returned; it then ends where the integration ended.
  */
-pc_status pc_solver_run_dense(pc_solver *solver, double t, pc_dense **dense, pc_error **error);
+PC_API
+pc_status pc_solver_run_dense(pc_solver *solver,
+                              double t,
+                              pc_dense **dense,
+                              pc_error **error);
 
 /**
  * Writes y(t). At an event this is the state after the event, except at the very end of the
  * motion, where it is the limit from before. Inside a step the state deviates from the constraints
  * by the error of a step; pc_system_project moves it onto the constraints.
  */
+PC_API
 pc_status pc_dense_eval(const pc_dense *dense,
                         double t,
                         double *y,
@@ -2979,6 +3189,7 @@ pc_status pc_dense_eval(const pc_dense *dense,
  * Writes the rate of y at t. The rate may jump by the error of a step where one step meets the
  * next.
  */
+PC_API
 pc_status pc_dense_rate(const pc_dense *dense,
                         double t,
                         double *ydot,
@@ -2988,23 +3199,23 @@ pc_status pc_dense_rate(const pc_dense *dense,
 /**
  * The length of the state; 0 for NULL.
  */
-size_t pc_dense_dim(const pc_dense *dense);
+PC_API size_t pc_dense_dim(const pc_dense *dense);
 
 /**
  * The time at which the motion begins; NaN for NULL.
  */
-double pc_dense_t_begin(const pc_dense *dense);
+PC_API double pc_dense_t_begin(const pc_dense *dense);
 
 /**
  * The time at which the motion ends, which precedes its beginning if the motion runs backwards in
  * time; NaN for NULL.
  */
-double pc_dense_t_end(const pc_dense *dense);
+PC_API double pc_dense_t_end(const pc_dense *dense);
 
 /**
  * Frees a motion. NULL is allowed.
  */
-void pc_dense_free(pc_dense *dense);
+PC_API void pc_dense_free(pc_dense *dense);
 
 /**
  * Writes the time and state of a solver as bytes, to be freed with pc_bytes_free and read by
@@ -3016,6 +3227,7 @@ void pc_dense_free(pc_dense *dense);
  * last bit. Events of the model are part of the checkpoint; for a solver with events added by
  * pc_solver_add_event the call returns PC_UNSUPPORTED.
  */
+PC_API
 pc_status pc_solver_checkpoint(pc_solver *solver,
                                const char *label,
                                void **data,
@@ -3029,6 +3241,7 @@ pc_status pc_solver_checkpoint(pc_solver *solver,
  * what pc_solver_checkpoint wrote, for a model with the same names and equations; the values of
  * parameters may differ. The statistics of the solver count the work from the checkpoint on.
  */
+PC_API
 pc_status pc_solver_restore(const pc_system *system,
                             const pc_solver_options *options,
                             const void *data,
@@ -3040,16 +3253,21 @@ pc_status pc_solver_restore(const pc_system *system,
  * Writes the label of a checkpoint, to be freed with pc_string_free. Returns PC_INVALID_CHECKPOINT
  * in the same cases as pc_solver_restore.
  */
-pc_status pc_checkpoint_label(const void *data, size_t length, char **label, pc_error **error);
+PC_API
+pc_status pc_checkpoint_label(const void *data,
+                              size_t length,
+                              char **label,
+                              pc_error **error);
 
 /**
  * Frees the bytes of a checkpoint. NULL is allowed.
  */
-void pc_bytes_free(void *data);
+PC_API void pc_bytes_free(void *data);
 
 /**
  * Writes the statistics so far. `size` is sizeof(pc_statistics).
  */
+PC_API
 pc_status pc_solver_statistics(const pc_solver *solver,
                                pc_statistics *statistics,
                                size_t size,
@@ -3074,6 +3292,7 @@ pc_status pc_solver_statistics(const pc_solver *solver,
  * members that were finished have then been passed to the observer. The system may be used during
  * the call.
  */
+PC_API
 pc_status pc_ensemble_run(const pc_system *system,
                           const pc_solver_options *options,
                           size_t members,
@@ -3099,6 +3318,7 @@ pc_status pc_ensemble_run(const pc_system *system,
  * exponents is below 10. `options` may be NULL. Events of the model are not followed. Takes as
  * long as an integration over all intervals; PC_LIMIT as for a solver.
  */
+PC_API
 pc_status pc_system_lyapunov(const pc_system *system,
                              const pc_solver_options *options,
                              double t,
@@ -3124,6 +3344,7 @@ pc_status pc_system_lyapunov(const pc_system *system,
  * pc_model_differentiate; it may be NULL, of length 0. The first call derives the derivatives of
  * observables, as pc_system_new derives equations.
  */
+PC_API
 pc_status pc_system_gradient(const pc_system *system,
                              const pc_solver_options *options,
                              double t,

@@ -154,8 +154,13 @@ mod tests {
     }
 
     /// What is for C++ as it stands, what a call has told by itself, and what objects own by themselves.
-    const LEFT_TO_C: [&str; 4] =
-        ["pc_version", "pc_abi_version", "pc_error_status", "pc_solver_set_event_observer"];
+    const LEFT_TO_C: [&str; 5] = [
+        "pc_version",
+        "pc_version_number",
+        "pc_abi_version",
+        "pc_error_status",
+        "pc_solver_set_event_observer",
+    ];
 
     #[test]
     fn every_function_is_wrapped_for_cpp() {

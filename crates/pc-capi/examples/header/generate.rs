@@ -20,6 +20,7 @@ pub(crate) fn header() -> String {
         line_endings: cbindgen::LineEndingStyle::LF,
         ..Config::default()
     };
+    config.function.prefix = Some("PC_API".to_owned());
     config.enumeration = EnumConfig { prefix_with_name: false, ..EnumConfig::default() };
     config.export.exclude = vec!["PREAMBLE".to_owned()];
     // The enumerations of options are only named in the documentation of their fields.
@@ -49,12 +50,27 @@ pub(crate) fn header() -> String {
     within_extern_c(&text.replace(" \n", "\n"))
 }
 
+/// What stands before each function: where it comes from, which some compilers ask for.
+const EXPORT: &str = "\
+#if !defined(PC_API)
+  #if defined(_WIN32) && !defined(PC_STATIC)
+    /* Comes from pc.dll; define PC_STATIC where the static library is linked instead. */
+    #define PC_API __declspec(dllimport)
+  #elif !defined(_WIN32) && defined(__GNUC__)
+    #define PC_API __attribute__((visibility(\"default\")))
+  #else
+    #define PC_API
+  #endif
+#endif
+
+";
+
 /// The text with all of its declarations as those of C. cbindgen leaves out the types of functions, which in C++ are others.
 fn within_extern_c(text: &str) -> String {
     const OPENING: &str = "#ifdef __cplusplus\nextern \"C\" {\n#endif // __cplusplus\n\n";
     const INCLUDES: &str = "#include <stdint.h>\n\n";
     assert!(text.matches(OPENING).count() == 1 && text.matches(INCLUDES).count() == 1);
-    text.replace(OPENING, "").replace(INCLUDES, &format!("{INCLUDES}{OPENING}"))
+    text.replace(OPENING, "").replace(INCLUDES, &format!("{INCLUDES}{EXPORT}{OPENING}"))
 }
 
 /// In the order in which a reader needs them.

@@ -51,7 +51,7 @@ fn takes_as_much(new: &str, old: &str) -> bool {
         && taken.zip(given).all(is_same)
 }
 
-/// What stands between semicolons outside braces, without comments and preprocessor, with single spaces.
+/// What stands between semicolons outside braces, without comments, preprocessor and PC_API, with single spaces.
 fn declarations(header: &str) -> Vec<String> {
     let mut code = String::new();
     let mut rest = header;
@@ -61,9 +61,10 @@ fn declarations(header: &str) -> Vec<String> {
     }
     code.push_str(rest);
     let outside = |line: &&str| {
-        !line.starts_with('#') && !line.starts_with("extern \"C\"") && !line.starts_with("}  //")
+        !line.trim_start().starts_with('#') && !line.starts_with("extern \"C\"") && !line.starts_with("}  //")
     };
-    let words: Vec<&str> = code.lines().filter(outside).flat_map(str::split_whitespace).collect();
+    let words = code.lines().filter(outside).flat_map(str::split_whitespace);
+    let words: Vec<&str> = words.filter(|&word| word != "PC_API").collect();
     let (mut found, mut current, mut depth) = (Vec::new(), String::new(), 0);
     for c in words.join(" ").chars() {
         depth += i32::from(c == '{') - i32::from(c == '}');

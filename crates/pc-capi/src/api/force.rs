@@ -44,10 +44,11 @@ pub type pc_force_jacobian = Option<
     ) -> c_int,
 >;
 
-/// Declares that a force computed by a function of yours acts on a quasi-velocity, or on a
-/// coordinate if the model declares no quasi-velocities. This force is added to the other forces
-/// that act there. The function belongs to the system, not to the model: set it with
-/// pc_system_set_force. An unknown name is reported by pc_model_check and pc_system_new.
+/// Declares that a force computed by a function of yours acts on a quasi-velocity or, if the model
+/// declares no quasi-velocities, on the velocity x' of a coordinate x; "x" means the same. This
+/// force is added to the other forces that act there. The function belongs to the system, not to
+/// the model: set it with pc_system_set_force. An unknown name is reported by pc_model_check and
+/// pc_system_new.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn pc_model_add_external_force(
     model: *mut pc_model,

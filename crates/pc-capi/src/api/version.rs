@@ -8,6 +8,8 @@ pub const PC_VERSION_MAJOR: u32 = 0;
 pub const PC_VERSION_MINOR: u32 = 1;
 /// Third number of the header's version.
 pub const PC_VERSION_PATCH: u32 = 0;
+/// The header's version as one number, major × 10000 + minor × 100 + patch.
+pub const PC_VERSION_NUMBER: u32 = 100;
 /// Version of the binary interface, the number in the name libpc.so.N. A program runs with
 /// any library of the same number that is not older than its header.
 pub const PC_ABI_VERSION: u32 = 0;
@@ -17,6 +19,13 @@ pub const PC_ABI_VERSION: u32 = 0;
 pub extern "C" fn pc_version() -> *const c_char {
     const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "\0");
     VERSION.as_ptr().cast()
+}
+
+/// The version of the library as one number, such as 100 for 0.1.0: what PC_VERSION_NUMBER is for
+/// the header.
+#[unsafe(no_mangle)]
+pub extern "C" fn pc_version_number() -> u32 {
+    PC_VERSION_NUMBER
 }
 
 /// The PC_ABI_VERSION of the library that is in use.

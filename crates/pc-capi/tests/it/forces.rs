@@ -243,6 +243,29 @@ fn names_and_numbers_of_the_forces_are_known() {
     }
 }
 
+/// As the rates are called, and as forces of the text are: by the velocity or by its coordinate.
+#[test]
+fn a_force_on_a_velocity_is_one_on_its_coordinate() {
+    let name_of = |on: &[&str]| {
+        let model = Model::named("pendulum");
+        declare(&model, on);
+        let system = model.system(PC_POINCARE).unwrap();
+        // SAFETY: a live system, whose names are text.
+        unsafe {
+            assert_eq!(pc_system_force_count(system.0.as_ref()), 1);
+            CStr::from_ptr(pc_system_force_name(system.0.as_ref(), 0)).to_str().unwrap().to_owned()
+        }
+    };
+    for on in [&["θ"][..], &["θ'"], &["θ", "θ'"]] {
+        assert_eq!(name_of(on), "θ'");
+    }
+    let model = Model::named("pendulum");
+    declare(&model, &["θ''"]);
+    // SAFETY: a live model.
+    let refusal = call(|error| unsafe { pc_model_check(model.0, error) }).unwrap_err();
+    assert_eq!(refusal.message, "no external force can act on `θ''`; one can on θ'");
+}
+
 const TWO_SPRINGS: &str = "
 [coordinates]
 x = 1.0

@@ -69,4 +69,8 @@ fn versions_agree() {
     let version = unsafe { CStr::from_ptr(pc::pc_version()) }.to_str().unwrap();
     let numbers = [pc::PC_VERSION_MAJOR, pc::PC_VERSION_MINOR, pc::PC_VERSION_PATCH].map(|n| n.to_string());
     assert_eq!(version, numbers.join("."));
+    let [major, minor, patch] = [pc::PC_VERSION_MAJOR, pc::PC_VERSION_MINOR, pc::PC_VERSION_PATCH];
+    assert!(minor < 100 && patch < 100, "a larger number overtakes the next one before it");
+    assert_eq!(pc::PC_VERSION_NUMBER, 10_000 * major + 100 * minor + patch);
+    assert_eq!(pc::pc_version_number(), pc::PC_VERSION_NUMBER);
 }

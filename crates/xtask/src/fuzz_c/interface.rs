@@ -121,7 +121,7 @@ fn function(line: &str, header: &str) -> Option<Function> {
     let (before, after) = header.split_once(&format!("{head}("))?;
     let named = list(after.split_once(';')?.0)?;
     let kinds = list(kinds)?;
-    let text = before.rsplit_once("/**")?.1.replace("*/", "").replace("\n *", " ");
+    let text = before.rsplit_once("/**")?.1.split_once("*/")?.0.replace("\n *", " ");
     let parameters = kinds.iter().zip(&named).map(|(kind, named)| {
         let (declared, name) = split_name(named);
         (declared == *kind).then(|| Parameter { kind: kind.clone(), name })
@@ -150,7 +150,7 @@ mod tests {
 
     const HEADER: &str = "/**\n * A status.\n */\ntypedef enum { PC_OK = 0 } pc_status;\n\
         /**\n * Says the \"first\"\n * or \"second\".\n */\n\
-        pc_status pc_model_say(pc_model *model,\n                       const char *const *names,\n\
+        PC_API pc_status pc_model_say(pc_model *model,\n                       const char *const *names,\n\
                                size_t length);\n/** None. */\nint pc_none(void);\n";
 
     fn of(lines: &str) -> Result<Interface, Error> {
