@@ -174,9 +174,10 @@ pub unsafe extern "C" fn pc_system_linearize(
 type Wish = (*mut f64, usize, usize, &'static str);
 
 /// Refuses arrays to be written that share memory with each other or with those that are read;
-/// arrays of a wrong length are refused elsewhere.
+/// arrays of a wrong length are refused elsewhere, and empty ones are nowhere.
 fn separate(wanted: &[Wish], read: &[(*const f64, usize, usize, &'static str)]) -> Result<(), CallError> {
-    let fits = |&(_, length, expected, _): &(*const f64, usize, usize, &str)| length == expected;
+    let fits =
+        |&(_, length, expected, _): &(*const f64, usize, usize, &str)| length == expected && length > 0;
     let mut known: Vec<_> = read.iter().copied().filter(fits).collect();
     let written =
         wanted.iter().map(|&(data, length, expected, what)| (data.cast_const(), length, expected, what));

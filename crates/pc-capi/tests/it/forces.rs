@@ -247,7 +247,7 @@ fn names_and_numbers_of_the_forces_are_known() {
 #[test]
 fn a_force_on_a_velocity_is_one_on_its_coordinate() {
     let name_of = |on: &[&str]| {
-        let model = Model::named("pendulum");
+        let model = Model::text(&text_of("pendulum")).unwrap();
         declare(&model, on);
         let system = model.system(PC_POINCARE).unwrap();
         // SAFETY: a live system, whose names are text.
@@ -259,7 +259,7 @@ fn a_force_on_a_velocity_is_one_on_its_coordinate() {
     for on in [&["θ"][..], &["θ'"], &["θ", "θ'"]] {
         assert_eq!(name_of(on), "θ'");
     }
-    let model = Model::named("pendulum");
+    let model = Model::text(&text_of("pendulum")).unwrap();
     declare(&model, &["θ''"]);
     // SAFETY: a live model.
     let refusal = call(|error| unsafe { pc_model_check(model.0, error) }).unwrap_err();

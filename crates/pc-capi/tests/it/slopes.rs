@@ -321,19 +321,23 @@ fn what_is_wrong_with_a_linearization_is_said() {
     };
     assert_eq!(only(36, ptr::null_mut(), 0), Ok(()));
     assert_eq!(only(36, inside, 6).unwrap_err().message, "a and b share memory, but must be separate");
-    // The index 1 as the bytes of a number; what is written there would be read as an index.
-    let mut place = [f64::from_bits(1); 12];
-    let place = place.as_mut_ptr();
-    // SAFETY: a live system and arrays as long as said; they overlap, which is refused.
-    let shared = call(|error| unsafe {
-        let (none, some) = (ptr::null(), ptr::null_mut());
-        let (y, inputs) = (y.as_ptr(), place.cast::<usize>());
-        let (n, wanted) = (2 * dim, place);
-        pc_system_linearize(
-            system.0, t, y, dim, none, 0, inputs, 1, some, 0, wanted, n, some, 0, some, 0, error,
-        )
-    });
-    assert_eq!(shared.unwrap_err().message, "inputs and b share memory, but must be separate");
     assert_eq!(only(35, ptr::null_mut(), 0).unwrap_err().message, "a: 35 numbers instead of 36");
     assert_eq!(only(36, ptr::null_mut(), 6).unwrap_err().message, "b is a null pointer");
+}
+
+/// What is written there would be read as indices.
+#[test]
+fn inputs_are_apart_from_what_is_written() {
+    let system = System::of("heavy-top-lagrange");
+    let ((t, y), dim) = (system.start(), system.dim());
+    // The index 1 as the bytes of a number.
+    let mut place = vec![f64::from_bits(1); dim];
+    let b = place.as_mut_ptr();
+    // SAFETY: a live system and arrays as long as said; they overlap, which is refused.
+    let shared = call(|error| unsafe {
+        let (none, left) = (ptr::null(), ptr::null_mut());
+        let (s, y, inputs) = (system.0, y.as_ptr(), b.cast::<usize>());
+        pc_system_linearize(s, t, y, dim, none, 0, inputs, 1, left, 0, b, dim, left, 0, left, 0, error)
+    });
+    assert_eq!(shared.unwrap_err().message, "inputs and b share memory, but must be separate");
 }

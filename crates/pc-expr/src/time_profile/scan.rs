@@ -188,10 +188,15 @@ impl Scan {
         self.noise
     }
 
-    /// Lets later queries take half as many evaluations if the last one took all, and more again if it did not. Each
+    /// Whether the last query took all the evaluations that it was allowed.
+    pub(crate) fn is_exhausted(&self) -> bool {
+        self.left == 0
+    }
+
+    /// Lets later queries take half as many evaluations if this one was too much, and more again if it was not. Each
     /// step of a motion that goes wild, as with tolerances that allow anything, would take all of them.
-    pub(crate) fn adapt(&mut self) {
-        self.allowed = if self.left == 0 { self.allowed / 2 } else { 2 * self.allowed }.clamp(FEWEST, MOST);
+    pub(crate) fn adapt(&mut self, too_much: bool) {
+        self.allowed = if too_much { self.allowed / 2 } else { 2 * self.allowed }.clamp(FEWEST, MOST);
     }
 
     /// Whether the interval lies ahead in the window.

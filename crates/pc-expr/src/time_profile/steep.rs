@@ -148,13 +148,15 @@ impl SteepFunctions {
         let (between, along) = self.counted((t, to), motion);
         self.times.forget();
         for followed in &mut self.parts {
-            if !followed.is_quiet(between, along) {
+            let is_quiet = followed.is_quiet(between, along);
+            if !is_quiet {
                 let Watched { part, scan } = &mut followed.watched;
                 part.attend_to(&followed.loud);
                 scan.begin(part, between.0, between.1, along);
                 self.times.add(&mut followed.watched, between, along, enough, &mut self.room);
-                followed.watched.scan.adapt();
             }
+            let scan = &mut followed.watched.scan;
+            scan.adapt(!is_quiet && scan.is_exhausted());
         }
         self.times.arrange(direction, self.origin);
         &self.times

@@ -230,7 +230,7 @@ fn segments_of_projected_states_fit_together() {
 /// The derivatives of a high order overflow there, and the powers of the length of the step vanish.
 #[test]
 fn the_shortest_motions_have_states_and_rates() {
-    for method in [Method::Adams, Method::Bdf, Method::Dop853, Method::Auto] {
+    for method in [Method::Dop853, Method::Auto] {
         for end in [1e-200, -1e-305, 1e-320, f64::from_bits(1)] {
             let motion = circle(end, &Options::new(method));
             for t in [0.0, 0.5 * end, end] {
