@@ -233,8 +233,10 @@ impl Writing {
             Blow::Signal(number, name) => &[(number, name)],
             Blow::Twice => &[(2, "INT"), (15, "TERM")],
         };
+        if !signals.is_empty() {
+            thread::sleep(wait);
+        }
         for &(_, name) in signals {
-            thread::sleep(wait.min(Duration::from_secs(10)));
             let pause = Duration::from_micros(random.below(20_000) as u64);
             Command::new("kill")
                 .args(["-s", name, &child.id().to_string()])

@@ -29,7 +29,7 @@ const ROUND: [usize; 6] = [40, 10, 4, 10, 2, 1];
 const EACH: [usize; 2] = [10, 5];
 
 /// After which a run with limits is called hanging.
-const HANGING: Duration = Duration::from_secs(60);
+const HANGING: Duration = Duration::from_secs(30);
 
 /// How much is attempted.
 #[derive(Clone, Copy, Debug)]
