@@ -344,7 +344,7 @@ impl Handles {
     pub fn start(&self) -> Option<Vec<f64>> {
         // SAFETY: a live system, an array with its length, and a place for the time.
         unsafe {
-            let mut y = vec![0.0; pc::pc_system_dim(self.system)];
+            let mut y = vec![0.0; pc::pc_system_dim(self.system.as_ref())];
             let mut t = 0.0;
             let status =
                 pc::pc_system_start(self.system, &raw mut t, y.as_mut_ptr(), y.len(), ptr::null_mut());

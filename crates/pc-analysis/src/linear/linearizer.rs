@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use pc_expr::{Backend, Evaluator, Inputs, Program};
+use pc_expr::{Backend, Deadline, Evaluator, Inputs, Program};
 use pc_mech::{CompileOptions, Equations, Expr, Graph, Matrix, Motion, Multipliers, System, VectorField};
 
 use crate::error::{AnalysisError, check_variables};
@@ -101,6 +101,8 @@ pub struct Linearizer {
     pub(super) is_leaf_known: bool,
     /// The units in which the components of the state are measured.
     pub(super) units: Vec<f64>,
+    /// When searches have to end, if ever.
+    pub(super) until: Option<Deadline>,
 }
 
 /// The numbers of components of all parts.
@@ -253,6 +255,7 @@ impl Linearizer {
         };
         let is_timed = conditions.iter().any(|g| g.depends_on(system.frame().time()));
         Ok(Linearizer {
+            until: None,
             surface: evaluator(&of_state, &surface)?,
             frame: evaluator(&of_state, &b.to_rows().concat())?,
             parts: evaluator(&with_unknowns, &parts.concat())?,

@@ -1,5 +1,6 @@
 //! The equilibrium or steady motion near a state.
 
+use pc_expr::{Deadline, ExprError};
 use pc_mech::Matrix;
 
 use crate::error::AnalysisError;
@@ -19,6 +20,11 @@ pub(super) struct Balanced {
 pub(super) const FEW: usize = 5;
 
 impl Linearizer {
+    /// Ends searches for equilibria and steady motions at a deadline: no such state is found after it.
+    pub fn until(&mut self, deadline: &Deadline) {
+        self.until = Some(deadline.clone());
+    }
+
     /// The equilibrium or steady motion near a state, on the leaf of that state.
     ///
     /// # Errors
@@ -224,6 +230,9 @@ impl Linearizer {
         unknowns: &Unknowns,
         z: &[f64],
     ) -> Result<(Vec<f64>, Matrix<f64>), AnalysisError> {
+        if let Some(what) = self.until.as_ref().and_then(Deadline::passed) {
+            return Err(ExprError::Spent { what, stage: "the search for steady motions", nodes: 0 }.into());
+        }
         self.give(point, unknowns, z);
         let (mut values, slopes) = self.statics.at(t, point, self.motion.parameters(), unknowns)?;
         let (distances, normals) = self.surface_at(t, &point.state, Some(levels))?;

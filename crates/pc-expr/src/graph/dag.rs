@@ -35,6 +35,8 @@ pub(crate) struct Dag {
     fingerprints: Vec<Fingerprint>,
     /// The values of nodes with roots, as sums of products of roots.
     expansions: FxHashMap<NodeId, Terms>,
+    /// The values of the logarithms of nodes.
+    pub(super) logarithms: FxHashMap<NodeId, Value>,
     roots: Roots,
     /// Whether the node is known not to be negative where it has a value.
     pub(super) nonnegative: Vec<bool>,
@@ -81,6 +83,7 @@ impl Dag {
             nodes: Vec::new(),
             fingerprints: Vec::new(),
             expansions: FxHashMap::default(),
+            logarithms: FxHashMap::default(),
             roots: Roots::default(),
             nonnegative: Vec::new(),
             costs: Vec::new(),

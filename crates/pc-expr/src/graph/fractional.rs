@@ -5,15 +5,19 @@ use crate::graph::function::Function;
 use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::number::Number;
 
+/// From here on all numbers are whole: 2⁵³.
+const WHOLE: f64 = 2.0 / f64::EPSILON;
+
 impl Dag {
-    /// b and r r′ for (bʳ)^r′, if r and r r′ are fractional: both powers are real for b ≥ 0 only, where they are equal.
+    /// b and r r′ for (bʳ)^r′, if r and r r′ are fractional: both powers are real for b ≥ 0 only, where they are equal. So they are
+    /// if r r′ is too large for a number to have a fraction.
     /// In this way a tower of powers over powers is one power, and not products of roots of products of roots.
     pub(crate) fn power_of_power(&self, x: Atom, exponent: Number) -> Option<(Atom, Number)> {
         let Atom::Node(mut base) = x else { return None };
         let (mut product, mut found) = (exponent, None);
         while let Some((inner, r)) = self.fractional_power(base) {
             (base, product) = (inner, product * r);
-            if is_fractional(product) {
+            if is_fractional(product) || product.is_finite() && product.abs().to_f64() >= WHOLE {
                 found = Some((Atom::Node(base), product));
             }
         }

@@ -85,6 +85,11 @@ impl Graph {
         result
     }
 
+    /// The budget on which this graph draws.
+    pub fn budget(&self) -> &Budget {
+        &self.budget
+    }
+
     /// Takes the bytes of something that is kept beside the expressions from the budget.
     pub fn charge(&self, bytes: usize) {
         self.with(|dag| dag.charge(bytes as u64));

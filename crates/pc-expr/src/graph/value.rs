@@ -225,8 +225,18 @@ impl Dag {
         PowerProduct { known, rest }
     }
 
-    /// log u = Σ e log f over the powers f^e of u, including log √f = ½ log f and log e^f = f.
+    /// log u, which is known from then on: the logarithm of a root is that of its radicand, which may be a product of such roots.
     fn logarithm(&mut self, u: NodeId) -> Value {
+        if let Some(known) = self.logarithms.get(&u) {
+            return known.clone();
+        }
+        let value = self.sum_of_logarithms(u);
+        self.logarithms.insert(u, value.clone());
+        value
+    }
+
+    /// log u = Σ e log f over the powers f^e of u, including log √f = ½ log f and log e^f = f.
+    fn sum_of_logarithms(&mut self, u: NodeId) -> Value {
         let (c, mut factors) = self.factors_of(u);
         let mut sum = Vec::new();
         factors.retain(|&(node, e)| {

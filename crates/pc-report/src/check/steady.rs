@@ -57,6 +57,7 @@ pub(super) fn near_start<'g>(
         return SteadyFinding::None;
     };
     let conserved = model.conserved(equations, integrals);
+    model.linearizer.until(equations.system().graph().budget().deadline());
     let found = model.linearizer.steady(assembly.t_start, &model.start, &SteadyOptions::default());
     let found = found.and_then(|linear| {
         let stability = model.linearizer.stability(&linear, &conserved)?;
