@@ -2,8 +2,9 @@
 
 use std::fs;
 use std::hint::black_box;
+use std::num::NonZero;
 use std::sync::Barrier;
-use std::thread;
+use std::thread::{self, ScopedJoinHandle};
 use std::time::Instant;
 
 use pc_model::Builtin;
@@ -41,7 +42,7 @@ pub(crate) fn run(report: &mut Report) -> Result<(), Error> {
     report.line(format!(
         "\nEvaluations of ẏ a second on all threads, relative to one thread: the median of {ROUNDS} rounds, in each of which \
          every number of threads has its turn, on {} processors.\n",
-        thread::available_parallelism().map_or(1, |count| count.get())
+        thread::available_parallelism().map_or(1, NonZero::get)
     ));
     let threads = THREADS.map(|threads| threads.to_string());
     let columns: Vec<&str> = ["model"].into_iter().chain(threads.iter().map(String::as_str)).collect();
@@ -161,7 +162,7 @@ fn evaluations(code: &Code, threads: usize, calls: usize) -> Result<f64, Error> 
         let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
         ready.wait();
         let clock = Instant::now();
-        let ended: Vec<_> = workers.into_iter().map(|worker| worker.join()).collect();
+        let ended: Vec<_> = workers.into_iter().map(ScopedJoinHandle::join).collect();
         let seconds = clock.elapsed().as_secs_f64();
         for worker in ended {
             worker.map_err(|_| Error::Refused { call: "a thread" })??;
