@@ -6,7 +6,7 @@ use crate::derivation::point::Point;
 use crate::derivation::structure::Structure;
 use crate::error::Irregular;
 use crate::numbers::linear::independent_rows;
-use crate::numbers::number::{D1, D2, LANES, Lanes, MovingLanes};
+use crate::numbers::number::{D1, D2};
 use crate::numbers::rounding::Rounding;
 use crate::numbers::units::Units;
 use crate::text::couplings::Couplings;
@@ -56,47 +56,6 @@ impl Derivation {
         };
         let all = [both(&at.x, &along.x), both(&at.w, &along.w), both(&at.z, &along.z)];
         Point::new(&self.text, rounding, D1::new(at.t, along.t), all)
-    }
-
-    /// The derivatives along every velocity w_s, a row for each of the values that are found at a point.
-    pub(crate) fn along_velocities(
-        &self,
-        at: &Place,
-        rounding: &Rounding,
-        values: impl Fn(&Point<'_, Lanes>) -> Result<Vec<Lanes>, Irregular>,
-    ) -> Result<Vec<Vec<f64>>, Irregular> {
-        let still = |values: &[f64]| values.iter().map(|&value| Lanes::from_re(value)).collect();
-        let mut rows = Vec::new();
-        for first in (0..at.w.len()).step_by(LANES) {
-            let place = [still(&at.x), lanes(&at.w, first), still(&at.z)];
-            let point = Point::new(&self.text, rounding, Lanes::from_re(at.t), place);
-            append(&mut rows, at.w.len() - first, values(&point)?);
-        }
-        Ok(rows)
-    }
-
-    /// The same at a place that also changes in a direction, and the rates of these derivatives in that direction.
-    pub(crate) fn along_velocities_and(
-        &self,
-        at: &Place,
-        direction: &Direction,
-        rounding: &Rounding,
-        values: impl Fn(&Point<'_, MovingLanes>) -> Result<Vec<MovingLanes>, Irregular>,
-    ) -> Result<[Vec<Vec<f64>>; 2], Irregular> {
-        let moving = |value: Lanes, rate: &f64| MovingLanes::new(value, Lanes::from_re(*rate));
-        let along = |values: &[f64], rates: &[f64]| {
-            values.iter().zip(rates).map(|(&value, rate)| moving(Lanes::from_re(value), rate)).collect()
-        };
-        let [mut rows, mut rates] = [Vec::new(), Vec::new()];
-        for first in (0..at.w.len()).step_by(LANES) {
-            let w = lanes(&at.w, first).into_iter().zip(&direction.w).map(|(w, rate)| moving(w, rate));
-            let place = [along(&at.x, &direction.x), w.collect(), along(&at.z, &direction.z)];
-            let t = moving(Lanes::from_re(at.t), &direction.t);
-            let values = values(&Point::new(&self.text, rounding, t, place))?;
-            append(&mut rows, at.w.len() - first, values.iter().map(|value| value.re));
-            append(&mut rates, at.w.len() - first, values.iter().map(|value| value.eps));
-        }
-        Ok([rows, rates])
     }
 
     /// The point at a place that changes in two directions.
@@ -153,17 +112,21 @@ impl Derivation {
         at: &Place,
         rounding: &Rounding,
     ) -> Result<Vec<Vec<f64>>, Irregular> {
-        let rows = self.along_velocities(at, rounding, |point| {
-            which.iter().map(|&a| point.velocity_constraint(a, self.on_positions[a])).collect()
-        })?;
-        // Without velocities there are no rows to be found, although there may be constraints.
-        Ok(if at.w.is_empty() { vec![Vec::new(); which.len()] } else { rows })
+        let mut rows = vec![Vec::new(); which.len()];
+        for s in 0..at.w.len() {
+            let column = self.constraint_rates(which, at, &at.along_velocity(s), rounding)?;
+            rows.iter_mut().zip(column).for_each(|(row, entry)| row.push(entry));
+        }
+        Ok(rows)
     }
 
     /// b_s for all s.
     pub(crate) fn frame(&self, at: &Place, rounding: &Rounding) -> Result<Vec<Vec<f64>>, Irregular> {
-        let rows = self.along_velocities(at, rounding, |point| Ok(point.velocities()?.to_vec()))?;
-        Ok((0..at.w.len()).map(|s| rows.iter().map(|row| row[s]).collect()).collect())
+        let field = |s: usize| {
+            let point = self.once(at, &at.along_velocity(s), rounding);
+            Ok(point.velocities()?.iter().map(|u| u.eps).collect())
+        };
+        (0..at.w.len()).map(field).collect()
     }
 
     /// Those of the given constraints that are independent of the preceding ones at a place.
@@ -184,24 +147,5 @@ impl Derivation {
             z: place.z.iter().map(|&z| rounding.of(z)).collect(),
             w: place.w.iter().zip(sizes).map(by).collect(),
         }
-    }
-}
-
-/// Velocities, of which those from `first` on change, each in a lane of its own.
-fn lanes(w: &[f64], first: usize) -> Vec<Lanes> {
-    let mut lanes: Vec<Lanes> = w.iter().map(|&w| Lanes::from_re(w)).collect();
-    for (lane, w) in lanes[first..].iter_mut().take(LANES).enumerate() {
-        *w = w.derivative(lane);
-    }
-    lanes
-}
-
-/// Appends the derivatives of each value to its row; `left` velocities are left, of which a number holds only so many.
-fn append(rows: &mut Vec<Vec<f64>>, left: usize, values: impl IntoIterator<Item = Lanes>) {
-    for (place, value) in values.into_iter().enumerate() {
-        if place == rows.len() {
-            rows.push(Vec::with_capacity(left));
-        }
-        rows[place].extend((0..LANES.min(left)).map(|lane| value.eps.0.map_or(0.0, |rates| rates[lane])));
     }
 }
