@@ -17,22 +17,17 @@ use crate::graph::node::{Atom, Node, NodeId};
 use crate::graph::number::Number;
 use crate::graph::places::SymbolPlaces;
 use crate::graph::subgraph::Cone;
-use crate::identity::running_error::Weighed;
 
 /// A number at which no divisor is likely to vanish.
 const ODD: Number = Number::Rational { num: 355, den: 452 };
-
-/// A change of a value in units of its terms that is no rounding.
-const VISIBLE: f64 = 1e-6;
 
 impl Graph {
     /// e written without the symbols and angles on which it does not depend: they are replaced by regular
     /// values, `variables` by 0 if that is regular.
     pub(super) fn forget<'g>(&'g self, e: Expr<'g>, variables: &SymbolPlaces) -> Expr<'g> {
         let mut short = e;
-        let shown = self.shown_to_depend(e);
         for z in self.repeated_symbols(e) {
-            if !shown.contains(&z) && self.symbols_of(&[short]).contains(&z) && !short.depends_on(z) {
+            if self.symbols_of(&[short]).contains(&z) && !short.depends_on(z) {
                 short = match variables.contains(z) {
                     true => self.at_zero(short, z),
                     false => self.at_regular_point(short, z),
@@ -43,44 +38,6 @@ impl Graph {
             short = self.at_regular_angle(short, angle);
         }
         short
-    }
-
-    /// The symbols with which the value of e changes by far more than rounding, between two points: for most this makes a
-    /// derivative unnecessary. That a value does not change, or jumps, shows nothing.
-    fn shown_to_depend<'g>(&'g self, e: Expr<'g>) -> Vec<Expr<'g>> {
-        let symbols = self.repeated_symbols(e);
-        if symbols.is_empty() || self.has_jumps(e) {
-            return Vec::new();
-        }
-        // Values between 0.3 and 1.3, no two of which are the same.
-        let value = |i: usize| Weighed::from_f64(0.3 + (0.618_033_988_749_895 * (i + 1) as f64).fract());
-        let mut point: Vec<(Expr<'g>, Weighed)> =
-            self.symbols_of(&[e]).into_iter().enumerate().map(|(i, symbol)| (symbol, value(i))).collect();
-        let at = |point: &[(Expr<'g>, Weighed)]| self.evaluate(&[e], point).map(|values| values[0]).ok();
-        let Some(before) = at(&point).filter(|before| before.is_known()) else { return Vec::new() };
-        let count = point.len();
-        let changes = |&symbol: &Expr<'g>| {
-            let Some(place) = point.iter().position(|(known, _)| *known == symbol) else { return false };
-            let kept = std::mem::replace(&mut point[place].1, value(count + place));
-            let after = at(&point);
-            point[place].1 = kept;
-            after.is_some_and(|after| {
-                let size = before.size().max(after.size());
-                after.is_known() && (after.value - before.value).abs() > VISIBLE * size
-            })
-        };
-        symbols.into_iter().filter(changes).collect()
-    }
-
-    /// Whether a function in e is constant but for jumps.
-    fn has_jumps<'g>(&'g self, e: Expr<'g>) -> bool {
-        let jumps = |function| matches!(function, Function::Sign | Function::Step);
-        self.with(|dag| {
-            let cone = Cone::below(dag, [e.atom_in(self)]);
-            cone.order
-                .iter()
-                .any(|&node| matches!(dag.node(node), Node::Call { function, .. } if jumps(function)))
-        })
     }
 
     /// e with z = 0, if that does not change its value; e itself otherwise.
