@@ -15,9 +15,9 @@ const STATES: usize = 3;
 #[must_use]
 pub fn derived_twice(document: Document) -> Model {
     let model = Model::new(document);
-    if let Err(error @ VerifyError::Disagreement(_)) =
-        model.derived(|assembly| verify(&model, assembly, &Options { states: STATES, seed: 1 }))
-    {
+    if let Err(error @ VerifyError::Disagreement(_)) = model.derived(|assembly| {
+        verify(&model, assembly, &Options { states: STATES, seed: 1, ..Options::default() })
+    }) {
         panic!("{}: {error}", model.title());
     }
     model

@@ -372,7 +372,7 @@ potential = "(-0.51)*(1.0/(2.0 + y^2))"
 x = "(-0.33)*exp(-((t - 0.13769)/0.02769)^2)"
 "#,
         ),
-        &Options { states: 100, seed: 0 },
+        &Options { states: 100, ..Options::default() },
     );
     assert_eq!(agreement.unwrap().states, 100);
 }
@@ -421,7 +421,7 @@ fn fully_cancelling_sums_have_the_size_of_their_terms() {
         list(60, &|i| format!("x{i}'"), " + "),
         list(59, &|i| format!("k{i} = \"x{i}^2 + x{}^2 - 0.5\"", i + 1), "\n"),
     );
-    let agreement = verified(&model(&text), &Options { states: 10, seed: 0 }).unwrap();
+    let agreement = verified(&model(&text), &Options { states: 10, ..Options::default() }).unwrap();
     assert!(agreement.projected > 0, "{agreement:?}");
 }
 

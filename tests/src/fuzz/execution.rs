@@ -204,7 +204,9 @@ pub fn execute(name: &str, text: &str, forms: Forms) -> Result<Execution, Refusa
     let emitted = forms.emitted.then(|| emission(name, &assembly, &equations?));
     model.observe_reactions(false);
     let second = forms.second.then(|| {
-        model.derived(|assembly| verify(&model, assembly, &pc_verify::Options { states: STATES, seed: 0 }))
+        model.derived(|assembly| {
+            verify(&model, assembly, &pc_verify::Options { states: STATES, ..pc_verify::Options::default() })
+        })
     });
     Ok(Execution { motion, canonical, projected, keeps_energy, conserved, emitted, second })
 }

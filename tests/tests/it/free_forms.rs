@@ -75,7 +75,7 @@ t_start = 0.7666216164272852
 /// the values of the quasi-velocities, which are outputs.
 #[test]
 fn forms_are_derived_twice() {
-    let options = pc_verify::Options { states: 10, seed: 1 };
+    let options = pc_verify::Options { states: 10, seed: 1, ..pc_verify::Options::default() };
     let cases = [
         ("chaplygin-sleigh", "u = 2*v + ω*sin(φ)", vec!["reduced", "lie-poisson", "orthonormal", "hamel"]),
         (

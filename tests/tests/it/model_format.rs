@@ -79,7 +79,7 @@ fn the_models_of_the_page_are_compared_with_their_second_derivation() {
     let directory = tempfile::tempdir().unwrap();
     for (line, document) in models(directory.path()) {
         let model = Model::new(document);
-        let options = pc_verify::Options { states: 3, seed: 5 };
+        let options = pc_verify::Options { states: 3, seed: 5, ..pc_verify::Options::default() };
         let agreement = model.derived(|assembly| verify(&model, assembly, &options));
         let agreement = agreement.unwrap_or_else(|error| panic!("line {line} of the page: {error}"));
         assert_eq!(agreement.states, 3, "line {line} of the page: {agreement}");

@@ -56,9 +56,13 @@ impl<'g> Frame<'g> {
             let Some(solve) = left_inverse.get_or_insert_with(|| self.left_inverse()) else {
                 return Err(AlgebraError::RankDeficient { rank: rank - 1, operators: k, pair: (r, s) });
             };
-            let c: Vec<Expr<'g>> = (0..k)
-                .map(|m| self.graph().dot(solve.row(m).iter().copied(), commutator.iter().copied()))
-                .collect();
+            let component = |m: usize| {
+                let pairs = solve.nonzero(m).filter(|&(i, _)| !commutator[i].is_zero());
+                let (row, along): (Vec<Expr<'g>>, Vec<Expr<'g>>) =
+                    pairs.map(|(i, entry)| (entry, commutator[i])).unzip();
+                self.graph().dot(row, along)
+            };
+            let c: Vec<Expr<'g>> = (0..k).map(component).collect();
             match self.residual(&terms, &c, near) {
                 residual if residual > Neighbourhood::ROUNDING => {
                     Err(AlgebraError::NotClosed { pair: (r, s), residual })
@@ -187,10 +191,10 @@ impl<'g> Frame<'g> {
         let follows = self.followers();
         let leading: Vec<usize> = (0..b.rows()).filter(|&i| !follows[i]).collect();
         if leading.len() == k {
-            let inverted = inverse(graph, &Matrix::from_fn(k, k, |i, s| b[(leading[i], s)]))?;
-            let place = |i: usize| leading.iter().position(|&leading| leading == i);
-            let entry = |m: usize, i: usize| place(i).map_or(Expr::ZERO, |i| inverted[(m, i)]);
-            return Some(Matrix::from_fn(k, b.rows(), entry));
+            let square = leading.iter().map(|&i| b.nonzero(i).collect()).collect();
+            let inverted = inverse(graph, &Matrix::from_rows(k, square))?;
+            let row = |m: usize| inverted.nonzero(m).map(|(i, entry)| (leading[i], entry)).collect();
+            return Some(Matrix::from_rows(b.rows(), (0..k).map(row).collect()));
         }
         let weights: Vec<Expr<'g>> =
             (0..).zip(self.weights()).map(|(i, w)| if follows[i] { Expr::ZERO } else { w }).collect();
@@ -205,34 +209,39 @@ impl<'g> Frame<'g> {
     /// velocities are only rounding errors with 0.
     fn weights(&self) -> Vec<Expr<'g>> {
         const SMALL: f64 = 1e-3;
-        let (b, k) = (self.b(), self.operators());
-        let ones = || vec![Expr::ONE; b.rows()];
-        let near = Neighbourhood::anywhere(self.graph(), &b.entries());
-        let samples = near.weighed(self.graph(), &b.entries(), TRIALS);
+        let b = self.b();
+        let entries: Vec<(usize, usize, Expr<'g>)> =
+            (0..b.rows()).flat_map(|i| b.nonzero(i).map(move |(s, entry)| (i, s, entry))).collect();
+        let values: Vec<Expr<'g>> = entries.iter().map(|&(_, _, entry)| entry).collect();
+        let near = Neighbourhood::anywhere(self.graph(), &values);
+        let samples = near.weighed(self.graph(), &values, TRIALS);
         if samples.is_empty() {
-            return ones();
+            return vec![Expr::ONE; b.rows()];
         }
-        let largest = |of: &mut dyn Iterator<Item = usize>| {
-            let sizes = of.flat_map(|place| samples.iter().map(move |sample| sample[place]));
-            sizes
-                .filter(|entry| entry.rest() > HIDDEN)
-                .fold(0.0, |most, entry| f64::max(most, entry.value.abs()))
+        let largest = |place: usize| {
+            let known = samples.iter().map(|sample| sample[place]).filter(|entry| entry.rest() > HIDDEN);
+            known.fold(0.0, |most, entry| f64::max(most, entry.value.abs()))
         };
-        let columns: Vec<f64> = (0..k).map(|s| largest(&mut (0..b.rows()).map(|i| i * k + s))).collect();
-        let share = |i: usize| {
-            let entry = |s: usize| largest(&mut std::iter::once(i * k + s)) / columns[s];
-            (0..k).filter(|&s| columns[s] > 0.0).map(entry).fold(0.0, f64::max)
-        };
-        let is_noise =
-            |i: usize| samples.iter().any(|sample| sample[i * k..][..k].iter().any(|x| x.value != 0.0));
-        let weight = |i: usize| match share(i) {
-            0.0 if is_noise(i) => Expr::ZERO,
+        let sizes: Vec<f64> = (0..entries.len()).map(largest).collect();
+        let mut columns = vec![0.0; self.operators()];
+        for (&(_, s, _), &size) in entries.iter().zip(&sizes) {
+            columns[s] = f64::max(columns[s], size);
+        }
+        let (mut shares, mut is_noise) = (vec![0.0; b.rows()], vec![false; b.rows()]);
+        for (place, &(i, s, _)) in entries.iter().enumerate() {
+            if columns[s] > 0.0 {
+                shares[i] = f64::max(shares[i], sizes[place] / columns[s]);
+            }
+            is_noise[i] |= samples.iter().any(|sample| sample[place].value != 0.0);
+        }
+        let weight = |(share, is_noise): (f64, bool)| match share {
+            0.0 if is_noise => Expr::ZERO,
             share if (f64::MIN_POSITIVE.sqrt()..SMALL).contains(&share) => {
                 Expr::from(2f64.powi(-2 * share.log2().round() as i32))
             }
             _ => Expr::ONE,
         };
-        (0..b.rows()).map(weight).collect()
+        shares.into_iter().zip(is_noise).map(weight).collect()
     }
 
     /// The largest component of Y − c^m X_m relative to its terms, for an operator Y such as [X_r, X_s] whose

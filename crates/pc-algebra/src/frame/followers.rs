@@ -1,6 +1,8 @@
 //! Coordinates that follow others, such as the height z of a point on a curve z = f(x).
 
-use pc_expr::Expr;
+use std::collections::BTreeMap;
+
+use pc_expr::{Expr, Graph};
 
 use crate::frame::frame::Frame;
 use crate::identity::sample::Neighbourhood;
@@ -19,40 +21,61 @@ impl<'g> Frame<'g> {
     ///
     /// On the circle, x' = −y ω and y' = x ω, neither follows the other: −y/x has no value at x = 0.
     pub(crate) fn followers(&self) -> Vec<bool> {
-        let b = self.b();
-        let near = Neighbourhood::anywhere(self.graph(), &b.entries());
-        let samples = near.samples(self.graph(), &b.entries(), POINTS);
-        let mut follows = vec![false; b.rows()];
-        for i in (0..b.rows()).rev() {
-            let leads = |j: usize| {
-                j != i && !follows[j] && self.may_follow(i, j, &samples) && self.follows(i, j, &near)
+        let (graph, b) = (self.graph(), self.b());
+        let entries = b.nonzero_entries();
+        let near = Neighbourhood::anywhere(graph, &entries);
+        let samples = near.samples(graph, &entries, POINTS);
+        let mut places = 0..0;
+        let rows: Vec<Row<'g>> = (0..b.rows())
+            .map(|i| {
+                let (columns, entries): (Vec<usize>, Vec<Expr<'g>>) = b.nonzero(i).unzip();
+                places = places.end..places.end + columns.len();
+                let samples = samples.iter().map(|sample| sample[places.clone()].to_vec()).collect();
+                Row { columns, entries, samples }
+            })
+            .collect();
+        let mut alike: BTreeMap<&[usize], Vec<usize>> = BTreeMap::new();
+        for (i, row) in rows.iter().enumerate() {
+            alike.entry(&row.columns).or_default().push(i);
+        }
+        let mut follows = vec![false; rows.len()];
+        for (i, row) in rows.iter().enumerate().rev() {
+            let leads = |&j: &usize| {
+                j != i && !follows[j] && row.may_follow(&rows[j]) && row.follows(&rows[j], graph, &near)
             };
-            follows[i] = b.row(i).iter().all(|entry| entry.is_zero()) || (0..b.rows()).any(leads);
+            follows[i] = row.columns.is_empty() || alike[&*row.columns].iter().any(leads);
         }
         follows
     }
+}
 
-    /// Whether row i is numerically a multiple of row j.
-    fn may_follow(&self, i: usize, j: usize, samples: &[Vec<f64>]) -> bool {
-        let (b, k) = (self.b(), self.operators());
-        (0..k).all(|s| b[(i, s)].is_zero() == b[(j, s)].is_zero())
-            && samples.iter().all(|sample| {
-                let (ours, theirs) = (&sample[i * k..][..k], &sample[j * k..][..k]);
-                let mut quotients = ours.iter().zip(theirs).filter(|(_, x)| **x != 0.0).map(|(y, x)| y / x);
-                let first = quotients.next().unwrap_or(0.0);
-                quotients.all(|quotient| (quotient - first).abs() <= SAME * first.abs())
-            })
+/// A row of b.
+struct Row<'g> {
+    /// The columns in which it has entries.
+    columns: Vec<usize>,
+    entries: Vec<Expr<'g>>,
+    /// The values of the entries at each point.
+    samples: Vec<Vec<f64>>,
+}
+
+impl<'g> Row<'g> {
+    /// Whether this row is numerically a multiple of another one with entries in the same columns.
+    fn may_follow(&self, other: &Row<'g>) -> bool {
+        self.samples.iter().zip(&other.samples).all(|(ours, theirs)| {
+            let mut quotients = ours.iter().zip(theirs).filter(|(_, x)| **x != 0.0).map(|(y, x)| y / x);
+            let first = quotients.next().unwrap_or(0.0);
+            quotients.all(|quotient| (quotient - first).abs() <= SAME * first.abs())
+        })
     }
 
-    /// Whether row i is a regular multiple of row j, with zeros in the same columns.
-    fn follows(&self, i: usize, j: usize, near: &Neighbourhood<'g>) -> bool {
-        let (graph, b) = (self.graph(), self.b());
-        let places = || (0..self.operators()).filter(|&s| !b[(j, s)].is_zero());
+    /// Whether this row is a regular multiple of another one with entries in the same columns.
+    fn follows(&self, other: &Row<'g>, graph: &'g Graph, near: &Neighbourhood<'g>) -> bool {
+        let pairs = || self.entries.iter().copied().zip(other.entries.iter().copied());
         let vanishes = |rest: Expr<'g>| rest.is_zero() || near.vanishes(graph, rest);
-        let is_multiple = |factor: Expr<'g>| places().all(|s| vanishes(b[(i, s)] - factor * b[(j, s)]));
-        places().any(|s| {
-            let factor = b[(i, s)] / b[(j, s)];
-            graph.is_as_regular(factor, b[(i, s)]) && is_multiple(factor)
+        let is_multiple = |factor: Expr<'g>| pairs().all(|(ours, theirs)| vanishes(ours - factor * theirs));
+        pairs().any(|(ours, theirs)| {
+            let factor = ours / theirs;
+            graph.is_as_regular(factor, ours) && is_multiple(factor)
         })
     }
 }

@@ -1,8 +1,8 @@
 //! Cyclic displacements: operators whose momentum is an integral.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use pc_mech::{Expr, Number, System};
+use pc_mech::{Expr, Graph, Number, System};
 
 use crate::integrals::polynomials::combination;
 
@@ -36,14 +36,48 @@ impl<'g> CyclicDisplacement<'g> {
         let x = system.frame().coordinates();
         let slope = system.frame().contract(&graph.gradient(system.lagrangian(), x));
         let gyroscopic = system.structure().gyroscopic(graph, system.quasi_velocities(), &momenta);
-        let rate = |s: usize| vec![graph.sum([gyroscopic[s], slope[s], system.forces()[s]])];
-        let rates: Vec<Vec<Expr<'g>>> = (0..momenta.len()).map(rate).collect();
+        let rate = |s: usize| graph.sum([gyroscopic[s], slope[s], system.forces()[s]]);
+        let rates: Vec<Expr<'g>> = (0..momenta.len()).map(rate).collect();
         let displacement = |a: Vec<Number>| CyclicDisplacement {
             momentum: combination(graph, &a, &momenta),
             commutes: is_central(system, &a),
             coefficients: a,
         };
-        graph.linear_relations(&rates).into_iter().map(displacement).collect()
+        let members = members(graph, &rates);
+        let related: Vec<Vec<Expr<'g>>> = members.iter().map(|&s| vec![rates[s]]).collect();
+        let all = |relation: Vec<Number>| {
+            let mut a = vec![Number::ZERO; rates.len()];
+            members.iter().zip(relation).for_each(|(&s, coefficient)| a[s] = coefficient);
+            a
+        };
+        graph.linear_relations(&related).into_iter().map(all).map(displacement).collect()
+    }
+}
+
+/// The number of rates up to which their relations are found at once: that takes the third power of their number.
+const MANY: usize = 64;
+
+/// The indices of the rates that a relation may contain. A rate that changes with a symbol which no other contains is in none;
+/// where there are many, it is left out, and so on.
+fn members<'g>(graph: &'g Graph, rates: &[Expr<'g>]) -> Vec<usize> {
+    let mut members: BTreeSet<usize> = (0..rates.len()).collect();
+    if rates.len() <= MANY {
+        return members.into_iter().collect();
+    }
+    loop {
+        let mut holders: HashMap<Option<String>, Vec<(usize, Expr<'g>)>> = HashMap::new();
+        for &s in &members {
+            for symbol in graph.symbols_of(&[rates[s]]) {
+                holders.entry(symbol.symbol_name()).or_default().push((s, symbol));
+            }
+        }
+        let alone = holders.into_values().filter(|of| of.len() == 1).flatten();
+        let apart: Vec<usize> =
+            alone.filter(|&(s, symbol)| rates[s].depends_on(symbol)).map(|(s, _)| s).collect();
+        if apart.is_empty() {
+            return members.into_iter().collect();
+        }
+        apart.iter().for_each(|s| _ = members.remove(s));
     }
 }
 

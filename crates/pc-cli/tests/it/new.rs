@@ -56,7 +56,9 @@ fn each_text_agrees_with_its_second_derivation() {
     for (kind, name) in kinds() {
         let document = Document::parse(Source::new(format!("{name}.toml"), kind.text()));
         let model = Model::new(document.unwrap_or_else(|error| panic!("{error}")));
-        let agreement = model.derived(|assembly| verify(&model, assembly, &Options { states: 50, seed: 3 }));
+        let agreement = model.derived(|assembly| {
+            verify(&model, assembly, &Options { states: 50, seed: 3, ..Options::default() })
+        });
         let agreement = agreement.unwrap_or_else(|error| panic!("{name}: {error}"));
         assert_eq!(agreement.states, 50, "{name}: {agreement}");
         // The table of its input begins where the motion does: no state is tried before.

@@ -119,7 +119,7 @@ impl<'g> System<'g> {
             coefficients: Matrix::from_fn(m, k, |a, s| rows[a][s]),
             velocities: graph.shorten(&velocities, &order),
             right: graph.shorten(&right, &order),
-            reactions: names.into_iter().map(|name| self.unused(name, "λ_")).collect(),
+            reactions: self.all_unused(names, "λ_"),
             followers: Vec::new(),
             rank: m,
             dependent: None,

@@ -42,7 +42,7 @@ impl<'g> System<'g> {
     /// velocity `x'`.
     pub fn momentum_symbols(&self) -> Vec<Expr<'g>> {
         let name = |eta: &Expr<'g>| format!("p_{}", eta.to_string().trim_end_matches('\''));
-        self.quasi_velocities.iter().map(|eta| self.unused(name(eta), "p_")).collect()
+        self.all_unused(self.quasi_velocities.iter().map(name), "p_")
     }
 
     /// The canonical equations (10), (11): [closed](Canonical::is_closed) in (t, x, y) where L is quadratic in the

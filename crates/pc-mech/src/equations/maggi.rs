@@ -42,8 +42,8 @@ impl<'g> Maggi<'g> {
     /// ```
     pub fn new(lagrange: Equations<'g>, partial: Matrix<Expr<'g>>) -> Maggi<'g> {
         let system = lagrange.system();
-        let symbols = system.frame().coordinates().iter().map(|x| system.unused(format!("E_{x}"), "E_"));
-        let symbols = symbols.collect();
+        let names = system.frame().coordinates().iter().map(|x| format!("E_{x}"));
+        let symbols = system.all_unused(names, "E_");
         Maggi { lagrange, symbols, partial }
     }
 

@@ -1,5 +1,7 @@
 //! A mechanical system: frame, Lagrangian, forces, and the observables of its motion.
 
+use std::collections::HashSet;
+
 use pc_algebra::{Frame, StructureCoefficients};
 use pc_expr::{Expr, Graph, SymbolPlaces};
 
@@ -210,13 +212,22 @@ impl<'g> System<'g> {
     /// The symbol with that name, preceded by `mark` as many times as it takes to distinguish it from the
     /// symbols of the system.
     pub(crate) fn unused(&self, name: String, mark: &str) -> Expr<'g> {
-        let parameters = self.parameters.iter().map(|(symbol, _)| symbol);
-        let taken: Vec<Expr<'g>> = self.state().into_iter().chain(parameters.copied()).collect();
-        let mut name = name;
-        while taken.contains(&self.graph().symbol(&name)) {
-            name.insert_str(0, mark);
-        }
-        self.graph().symbol(&name)
+        self.all_unused([name], mark)[0]
+    }
+
+    /// The symbols with these names, each preceded by `mark` as many times as it takes to distinguish it from the
+    /// symbols of the system.
+    pub(crate) fn all_unused(&self, names: impl IntoIterator<Item = String>, mark: &str) -> Vec<Expr<'g>> {
+        let parameters = self.parameters.iter().map(|&(symbol, _)| symbol);
+        let taken: HashSet<String> =
+            self.state().into_iter().chain(parameters).filter_map(|symbol| symbol.symbol_name()).collect();
+        let free = |mut name: String| {
+            while taken.contains(&name) {
+                name.insert_str(0, mark);
+            }
+            self.graph().symbol(&name)
+        };
+        names.into_iter().map(free).collect()
     }
 
     /// The same system with its quasi-velocities in another order, a permutation of 0..k.

@@ -44,7 +44,7 @@ impl System<'_> {
     pub fn velocity_transform(&self) -> Result<VelocityTransform, MechError> {
         let (graph, x) = (self.graph(), self.frame.coordinates());
         let (a, a0) = self.frame.definitions()?;
-        let rates: Vec<Expr<'_>> = x.iter().map(|x| self.unused(format!("{x}'"), "_")).collect();
+        let rates: Vec<Expr<'_>> = self.all_unused(x.iter().map(|x| format!("{x}'")), "_");
         let eta: Vec<Expr<'_>> = (0..a.rows())
             .map(|s| graph.dot(a.row(s).iter().copied(), rates.iter().copied()) + a0[s])
             .collect();

@@ -21,6 +21,9 @@ pub struct Segment {
     coefficients: Vec<f64>,
 }
 
+/// The factor of a derivative below which a term is lost beside the state, whatever the derivative was before it overflowed.
+const SHORTEST: f64 = 1e-150;
+
 impl Segment {
     /// A constant segment, to which [`push`](Segment::push) adds the derivatives at the centre.
     pub(crate) fn new((start, end): (f64, f64), centre: f64, state: &[f64]) -> Segment {
@@ -30,8 +33,9 @@ impl Segment {
     /// Adds the term of degree k from the derivative of that order at the centre.
     pub(crate) fn push(&mut self, k: u32, derivative: &[f64]) {
         let factor = (1..=k).fold(1.0, |factor, j| factor * (self.end - self.start) / f64::from(j));
-        // Over so short a piece that a derivative overflows, its term is below rounding.
-        let term = |derivative: &f64| if derivative.is_finite() { derivative * factor } else { 0.0 };
+        // Over so short a piece that a derivative overflows, its term is below rounding; over any other it is not known.
+        let is_lost = |derivative: &f64| !derivative.is_finite() && factor.abs() < SHORTEST;
+        let term = |derivative: &f64| if is_lost(derivative) { 0.0 } else { derivative * factor };
         self.coefficients.extend(derivative.iter().map(term));
     }
 
@@ -150,5 +154,26 @@ impl Extend<Segment> for DenseOutput {
 impl FromIterator<Segment> for DenseOutput {
     fn from_iter<I: IntoIterator<Item = Segment>>(segments: I) -> Self {
         DenseOutput { segments: segments.into_iter().collect() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn second_coefficient(length: f64, derivative: f64) -> f64 {
+        let mut segment = Segment::new((0.0, length), 0.0, &[1.0]);
+        segment.push(1, &[0.5]);
+        segment.push(2, &[derivative]);
+        segment.coefficients[2]
+    }
+
+    #[test]
+    fn a_term_whose_derivative_overflows_is_lost_over_the_shortest_pieces_only() {
+        assert_eq!(second_coefficient(1e-80, f64::INFINITY), 0.0);
+        assert_eq!(second_coefficient(1e-80, f64::NAN), 0.0);
+        assert_eq!(second_coefficient(1e-3, f64::INFINITY), f64::INFINITY);
+        assert!(second_coefficient(1e-3, f64::NAN).is_nan());
+        assert_eq!(second_coefficient(1e-3, 4.0), 2e-6);
     }
 }

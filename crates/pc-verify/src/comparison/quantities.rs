@@ -205,25 +205,16 @@ impl Derivation {
         motion: &Direction,
         rounding: &Rounding,
     ) -> Result<[Vec<Vec<f64>>; 2], Irregular> {
-        let (k, l) = (at.w.len(), binding.len());
-        let (mut rows, mut rates) = (vec![vec![0.0; k]; k], vec![vec![0.0; k]; k]);
-        for s in 0..k {
-            let point = self.twice(at, &at.along_velocity(s), motion, rounding);
-            let (columns, velocities) = (self.columns(&point)?, point.velocities()?);
-            for (place, &a) in binding.iter().enumerate() {
-                let value = point.velocity_constraint(a, self.on_positions[a])?;
-                (rows[place][s], rates[place][s]) = (value.re.eps, value.eps.eps);
-            }
-            for (place, &f) in free.iter().enumerate() {
-                let value = match f {
-                    Free::Column(column) => columns[column],
-                    Free::Velocity(i) => velocities[i],
-                    Free::Constraint(a) => point.velocity_constraint(a, self.on_positions[a])?,
-                };
-                (rows[l + place][s], rates[l + place][s]) = (value.re.eps, value.eps.eps);
-            }
-        }
-        Ok([rows, rates])
+        self.along_velocities_and(at, motion, rounding, |point| {
+            let (columns, velocities) = (self.columns(point)?, point.velocities()?);
+            let constraint = |a: usize| point.velocity_constraint(a, self.on_positions[a]);
+            let free = free.iter().map(|&free| match free {
+                Free::Column(column) => Ok(columns[column]),
+                Free::Velocity(i) => Ok(velocities[i]),
+                Free::Constraint(a) => constraint(a),
+            });
+            binding.iter().map(|&a| constraint(a)).chain(free).collect()
+        })
     }
 
     /// y_f = p·W_f, where the virtual velocity W_f has the free quasi-velocity f equal to 1 and the other

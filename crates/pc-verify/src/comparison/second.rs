@@ -26,6 +26,9 @@ const ALL_STATES: usize = 5_000_000;
 /// The number of terms up to which all equations are evaluated at a single state: this takes some seconds.
 const ONE_STATE: usize = 5 * ALL_STATES;
 
+/// The number of terms to evaluate along virtual velocities for all states together.
+const ALL_ALONG: usize = 4 * ALL_STATES;
+
 /// The number of operations of a matrix product that take as long as one term.
 const PRODUCTS: usize = 50;
 
@@ -115,6 +118,9 @@ impl Second {
         if !binding.is_empty() {
             let mut kept = derivation.independent(&start, &binding).unwrap_or_default();
             for number in 0..RANK_POINTS {
+                if kept.len() == binding.len() {
+                    break;
+                }
                 let place = derivation.random(&start, number);
                 let found =
                     place.and_then(|place| derivation.independent(&place, &binding)).unwrap_or_default();
@@ -324,7 +330,7 @@ impl Second {
 
     /// The number of states, out of this many, at which any equations are compared.
     pub(crate) fn affordable(&self, states: usize) -> usize {
-        let affordable = self.wholly(states) + 4 * ONE_STATE / self.projected_cost().max(1);
+        let affordable = self.wholly(states) + ALL_ALONG / self.projected_cost().max(1);
         states.min(affordable.max(FEWEST))
     }
 

@@ -134,7 +134,7 @@ k1 = "(-0.05)*cos(φ)*ω + (-0.19)*x^2*w1 + 0.18"
 kinetic = "0.51*ω^2 + 0.2*w1 + 1.04*exp((-1.0))*w1 + 0.26*tanh(x)*ω"
 "#,
             ),
-            &Options { states: 6, seed: 0 },
+            &Options { states: 6, ..Options::default() },
         );
         let agreement = agreement.unwrap();
         assert_eq!(agreement.states, 6);

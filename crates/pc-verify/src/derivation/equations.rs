@@ -65,7 +65,7 @@ impl Derivation {
         let frame = self.frame(at, rounding)?;
 
         let mut mass = DMatrix::zeros(k, k);
-        let (mut momenta, mut transport, mut work) = (vec![0.0; k], vec![0.0; k], vec![0.0; k]);
+        let mut work = vec![0.0; k];
         for s in 0..k {
             let along = at.along_velocity(s);
             for r in (s..k).filter(|&r| self.couplings.has(s, r)) {
@@ -73,10 +73,9 @@ impl Derivation {
                 mass[(s, r)] = value.eps.eps;
                 mass[(r, s)] = value.eps.eps;
             }
-            let value = self.twice(at, &along, &in_time, rounding).lagrangian()?;
-            (momenta[s], transport[s]) = (value.re.eps, value.eps.eps);
             work[s] = self.once(at, &at.along(frame[s].clone()), rounding).lagrangian()?.eps;
         }
+        let [momenta, transport] = self.slopes_of_lagrangian(at, &in_time, rounding)?;
         let transposed = self.transposed(at, &velocity, &frame, &momenta, rounding)?;
         let unit = |s: usize| Virtual { w: at.along_velocity(s), x: frame[s].clone() };
         let units: Vec<Virtual> = (0..k).map(unit).collect();
@@ -155,6 +154,17 @@ impl Derivation {
         Ok(derived)
     }
 
+    /// p_s = ∂L/∂w_s for all s, and their rates along a direction.
+    fn slopes_of_lagrangian(
+        &self,
+        at: &Place,
+        along: &Direction,
+        rounding: &Rounding,
+    ) -> Result<[Vec<f64>; 2], Irregular> {
+        let slopes = self.along_velocities_and(at, along, rounding, |point| Ok(vec![point.lagrangian()?]))?;
+        Ok(slopes.map(|rows| rows.into_iter().next().unwrap_or_default()))
+    }
+
     /// p·δw_s for all s, each with the size of its terms.
     fn transposed(
         &self,
@@ -190,10 +200,12 @@ impl Derivation {
         if rank < k {
             return Err(Irregular::Frame);
         }
+        let [_, moved] = self.along_velocities_and(at, &at.in_time(velocity), rounding, |point| {
+            Ok(point.velocities()?.to_vec())
+        })?;
         let mut all = Vec::with_capacity(k);
         for s in 0..k {
-            let moved = self.twice(at, &at.along_velocity(s), &at.in_time(velocity), rounding);
-            let transported: Vec<f64> = moved.velocities()?.iter().map(|u| u.eps.eps).collect();
+            let transported: Vec<f64> = moved.iter().map(|row| row[s]).collect();
             let displaced = self.once(at, &at.along(frame[s].clone()), rounding);
             let displaced: Vec<f64> = displaced.velocities()?.iter().map(|u| u.eps).collect();
             let difference = DMatrix::from_fn(n, 1, |i, _| transported[i] - displaced[i]);

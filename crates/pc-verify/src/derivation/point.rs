@@ -108,6 +108,8 @@ impl<'a, T: Number> Point<'a, T> {
         self.text
     }
 
+    /// The result of an operation that may round. Exact ones, such as 0 + x and 1·x, are left alone: if 1 in 1 − cos φ were
+    /// moved as well, by the same step as cos φ, nothing would show what the difference has lost.
     fn round(&self, value: T) -> T {
         value.rounded(self.rounding)
     }
@@ -215,17 +217,19 @@ impl<'a, T: Number> Point<'a, T> {
             Term::Rate(inner) => self.rate(inner)?,
             Term::Sum(terms) => {
                 let mut sum = T::constant(0.0);
-                for (subtracted, term) in terms {
+                for (i, (subtracted, term)) in terms.iter().enumerate() {
                     let term = self.value(term)?;
-                    sum = self.round(if *subtracted { sum - term } else { sum + term });
+                    let next = if *subtracted { sum - term } else { sum + term };
+                    sum = if i == 0 { next } else { self.round(next) };
                 }
                 sum
             }
             Term::Product(factors) => {
                 let mut product = T::constant(1.0);
-                for (divided, factor) in factors {
+                for (i, (divided, factor)) in factors.iter().enumerate() {
                     let factor = self.value(factor)?;
-                    product = self.round(if *divided { product / factor } else { product * factor });
+                    let next = if *divided { product / factor } else { product * factor };
+                    product = if i == 0 && !divided { next } else { self.round(next) };
                 }
                 product
             }

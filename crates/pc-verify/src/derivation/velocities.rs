@@ -19,13 +19,8 @@ impl Derivation {
         at: &Place,
         rounding: &Rounding,
     ) -> Result<Vec<Vec<f64>>, Irregular> {
-        let k = at.w.len();
-        let mut rows = vec![Vec::new(); self.declared()];
-        for s in 0..k {
-            let column = self.columns(&self.once(at, &at.along_velocity(s), rounding))?;
-            rows.iter_mut().zip(column).for_each(|(row, entry)| row.push(entry.eps));
-        }
-        Ok(rows)
+        let rows = self.along_velocities(at, rounding, |point| self.columns(point))?;
+        Ok(if at.w.is_empty() { vec![Vec::new(); self.declared()] } else { rows })
     }
 
     /// The number of columns: of declared quasi-velocities, or of coordinates if none is declared.

@@ -1,6 +1,6 @@
 //! Numbers with rates of change: dual numbers, nested as deeply as there are derivatives.
 
-use num_dual::{Dual, DualNum};
+use num_dual::{Derivative, Dual, DualNum, DualSVec64};
 
 use crate::numbers::rounding::Rounding;
 
@@ -131,11 +131,61 @@ macro_rules! level {
     };
 }
 
+/// The number of directions along which a number changes at once.
+pub(crate) const LANES: usize = 8;
+
+/// A number with its derivatives along several directions: they are found in one evaluation of a term.
+pub(crate) type Lanes = DualSVec64<LANES>;
+
+impl Number for Lanes {
+    type Rate = Dual<Lanes>;
+
+    fn changing(self, rate: Self) -> Option<Dual<Lanes>> {
+        Some(Dual::new(self, rate))
+    }
+
+    fn rate_of(changing: Dual<Lanes>) -> Self {
+        changing.eps
+    }
+
+    fn real(self) -> f64 {
+        self.re
+    }
+
+    fn is_constant(self) -> bool {
+        self.eps.0.is_none_or(|rates| rates.iter().all(|&rate| rate == 0.0))
+    }
+
+    fn vanishes(self) -> bool {
+        self.re == 0.0 && self.is_constant()
+    }
+
+    fn power(self, exponent: f64) -> Self {
+        if is_small_integer(exponent) {
+            return integer_power(self, exponent);
+        }
+        Lanes::new(self.re.power(exponent), self.eps * (self.re.power(exponent - 1.0) * exponent))
+    }
+
+    fn rounded(self, rounding: &Rounding) -> Self {
+        let re = rounding.of(self.re);
+        Lanes::new(re, Derivative::new(self.eps.0.map(|rates| rates.map(|rate| rounding.of(rate)))))
+    }
+}
+
 pub(crate) type D1 = Dual<f64>;
 pub(crate) type D2 = Dual<D1>;
 type D3 = Dual<D2>;
 type D4 = Dual<D3>;
 
+/// The same, which also changes in one more direction.
+pub(crate) type MovingLanes = Dual<Lanes>;
+type Lanes2 = Dual<MovingLanes>;
+type Lanes3 = Dual<Lanes2>;
+
+level!(MovingLanes, Lanes2);
+level!(Lanes2, Lanes3);
+level!(Lanes3, Lanes3, |_, _| None, |_| Lanes3::constant(f64::NAN));
 level!(D1, D2);
 level!(D2, D3);
 level!(D3, D4);

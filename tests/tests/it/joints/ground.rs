@@ -331,7 +331,7 @@ fn random_ground_is_derived_alike_by_both_routes() {
     for number in 0..3 {
         let text = touching(&mut Random::new(29, number), number);
         let model = Model::new(document(&text));
-        let options = pc_verify::Options { states: 1, seed: number };
+        let options = pc_verify::Options { states: 1, seed: number, ..pc_verify::Options::default() };
         let agreement = model.derived(|assembly| verify(&model, assembly, &options));
         let agreement = agreement.unwrap_or_else(|error| panic!("ground {number}: {error}\n{text}"));
         assert!(agreement.error < TOLERANCE, "ground {number}: {agreement}\n{text}");
@@ -361,7 +361,7 @@ fn heights_may_contain_all_smooth_functions() {
         );
         let mut model = Model::new(document(&text));
         model.project_start(true);
-        let options = pc_verify::Options { states: 2, seed: 1 };
+        let options = pc_verify::Options { states: 2, seed: 1, ..pc_verify::Options::default() };
         let agreement = model.derived(|assembly| verify(&model, assembly, &options));
         let agreement = agreement.unwrap_or_else(|error| panic!("{height}: {error}"));
         assert!(agreement.error < TOLERANCE, "{height}: {agreement}");

@@ -14,7 +14,7 @@ fn model(name: &str) -> Model {
 fn all_are_derived_alike_by_both_routes() {
     for builtin in TREES.iter().filter(|builtin| builtin.name != "stewart-platform") {
         let model = model(builtin.name);
-        let options = Options { states: 3, seed: 2 };
+        let options = Options { states: 3, seed: 2, ..Options::default() };
         let agreement = model.derived(|assembly| verify(&model, assembly, &options));
         let agreement = agreement.unwrap_or_else(|error| panic!("{}: {error}", builtin.name));
         assert!(agreement.states >= 3 && agreement.error < TOLERANCE, "{}: {agreement}", builtin.name);

@@ -89,8 +89,9 @@ fn random_trees_are_derived_alike_by_both_routes() {
     for number in 0..24 {
         let text = tree(&mut Random::new(17, number));
         let model = Model::new(document(&text));
-        let agreement =
-            model.derived(|assembly| verify(&model, assembly, &Options { states: 3, seed: number }));
+        let agreement = model.derived(|assembly| {
+            verify(&model, assembly, &Options { states: 3, seed: number, ..Options::default() })
+        });
         let agreement = agreement.unwrap_or_else(|error| panic!("tree {number}: {error}\n{text}"));
         assert!(agreement.error < TOLERANCE, "tree {number}: {agreement}\n{text}");
         compared += agreement.states;

@@ -73,7 +73,7 @@ fn random_contacts_are_derived_alike_by_both_routes() {
     for number in 0..12 {
         let text = touching(&mut Random::new(23, number));
         let model = Model::new(document(&text));
-        let options = pc_verify::Options { states: 3, seed: number };
+        let options = pc_verify::Options { states: 3, seed: number, ..pc_verify::Options::default() };
         let agreement = model.derived(|assembly| verify(&model, assembly, &options));
         let agreement = agreement.unwrap_or_else(|error| panic!("contact {number}: {error}\n{text}"));
         assert!(agreement.error < TOLERANCE, "contact {number}: {agreement}\n{text}");
