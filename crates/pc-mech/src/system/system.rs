@@ -220,7 +220,7 @@ impl<'g> System<'g> {
     pub(crate) fn all_unused(&self, names: impl IntoIterator<Item = String>, mark: &str) -> Vec<Expr<'g>> {
         let parameters = self.parameters.iter().map(|&(symbol, _)| symbol);
         let taken: HashSet<String> =
-            self.state().into_iter().chain(parameters).filter_map(|symbol| symbol.symbol_name()).collect();
+            self.state().into_iter().chain(parameters).filter_map(Expr::symbol_name).collect();
         let free = |mut name: String| {
             while taken.contains(&name) {
                 name.insert_str(0, mark);
