@@ -245,8 +245,8 @@ impl Writing {
             thread::sleep(pause);
         }
         let numbers: Vec<i32> = signals.iter().map(|&(number, _)| number).collect();
-        // The second signal ends the program at once.
-        let pardon = Pardon { signals: &numbers, silence: blow == Blow::Twice };
+        // The second signal ends the program at once, and what it says goes to a file.
+        let pardon = Pardon { signals: &numbers, silence: matches!(blow, Blow::Twice | Blow::Size(0)) };
         victim.end(child, &self.arguments(), pardon)
     }
 
