@@ -65,10 +65,10 @@ impl<'g> IntegrableCombination<'g> {
         count: usize,
         at: &[(Expr<'g>, f64)],
     ) -> Result<Vec<IntegrableCombination<'g>>, NonholoError> {
+        let (places, Some(multipliers)) = affine(multipliers)? else { return Ok(Vec::new()) };
         if count == 0 {
             return Ok(Vec::new());
         }
-        let (places, Some(multipliers)) = affine(multipliers)? else { return Ok(Vec::new()) };
         let system = multipliers.equations().system();
         let reach = Reach::new(&multipliers, at)?;
         let Some(forms) = forms(system, &reach) else { return Ok(Vec::new()) };

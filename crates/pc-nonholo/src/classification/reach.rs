@@ -1,7 +1,5 @@
 //! The velocities that constraints allow, and the directions that their commutators reach.
 
-use std::borrow::Cow;
-
 use pc_mech::{Constraint, Expr, Matrix, MechError, Multipliers, Neighbourhood, System};
 
 use crate::classification::involutive::{Along, OperatorField, involutive_closure};
@@ -42,20 +40,17 @@ impl<'g> Reach<'g> {
 
 /// The indices of the constraints that are affine in the velocities and, if there are any, the system under
 /// these constraints alone.
-pub(crate) fn affine<'m, 'g>(
-    multipliers: &'m Multipliers<'g>,
-) -> Result<(Vec<usize>, Option<Cow<'m, Multipliers<'g>>>), NonholoError> {
+pub(crate) fn affine<'g>(
+    multipliers: &Multipliers<'g>,
+) -> Result<(Vec<usize>, Option<Multipliers<'g>>), NonholoError> {
     let all = multipliers.constraints();
     let affine: Vec<usize> = (0..all.len()).filter(|&a| !all[a].is_nonlinear()).collect();
     if affine.is_empty() {
         return Ok((affine, None));
     }
-    if affine.len() == all.len() {
-        return Ok((affine, Some(Cow::Borrowed(multipliers))));
-    }
     let without: Vec<Constraint<'g>> = affine.iter().map(|&a| all[a].clone()).collect();
     let without = multipliers.equations().system().with_multipliers(&without)?;
-    Ok((affine, Some(Cow::Owned(without))))
+    Ok((affine, Some(without)))
 }
 
 /// The fields X'_0..X'_l of the velocities that satisfy C η + c_0 = 0, in components along X_0..X_k, for the
