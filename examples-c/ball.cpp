@@ -30,7 +30,7 @@ int main()
             return true;
         });
         const pc::dense motion = solver.run_dense(1.5);
-        std::printf("pc run bouncing-ball --rtol 1e-12 --t-end 2 --samples 5\n");
+        std::printf("pc run bouncing-ball --rtol 1e-12 --t-end 2 --rows 5\n");
         std::printf("t = 1.5: %.17g %.17g\n", solver.state()[0], solver.state()[1]);
         right = right && bounces.size() == 2 && std::fabs(bounces[1] - 2.6 * t0) < 1e-9;
         right = right && std::fabs(motion(t0 / 2)[0] - 0.75) < 1e-9 && motion.t_end() == 1.5;

@@ -82,7 +82,7 @@ static int follow(pc_system *system, double t_end, int steps, int steered, doubl
             work += (i == 0 || i == steps ? 1.0 : i % 2 ? 4.0 : 2.0) * h / 3.0 * q * y[W2];
         }
         if (ok && i == 800) { /* disk.toml has the torque as an expression */
-            printf("pc run disk.toml --set steered=%d --rtol 1e-11 --t-end %g --samples 11\n", steered, t_end);
+            printf("pc run disk.toml --set steered=%d --rtol 1e-11 --t-end %g --rows 11\n", steered, t_end);
             for (printf("t = %.17g:", i * h), j = 0; j < DIM; j++) {
                 printf(" %.17g%s", y[j], j + 1 < DIM ? "" : "\n");
             }

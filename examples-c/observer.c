@@ -70,7 +70,7 @@ int main(void)
         for (i = 0; i < w.count; i++) {
             printf("  %s stays %.12f\n", pc_system_observable_name(top, i), w.now[i]);
         }
-        printf("pc run heavy-top-lagrange --samples %d\nt = %.17g:", TIMES + 1, w.t);
+        printf("pc run heavy-top-lagrange --rows %d\nt = %.17g:", TIMES + 1, w.t);
         for (i = 0; i < 6; i++) {
             printf(" %.17g", y[i]);
         }

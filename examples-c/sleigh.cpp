@@ -40,7 +40,7 @@ int main()
         const bool completed = solver.run(times, [&](double t, pc::view<const double> y) {
             worst = std::fmax(worst, std::fabs(y[3] - w * std::tanh(k * t)));
             if (t == 4.0) {
-                std::printf("pc run chaplygin-sleigh --rtol 1e-11 --samples 51\n");
+                std::printf("pc run chaplygin-sleigh --rtol 1e-11 --rows 51\n");
                 std::printf("t = 4: %.17g %.17g %.17g %.17g %.17g\n", y[0], y[1], y[2], y[3], y[4]);
             }
             worst = std::fmax(worst, std::fabs(y[4] - 1.0 / std::cosh(k * t)));

@@ -50,7 +50,7 @@ def accelerations(program: str, model: str, robot: Robot, state: State) -> np.nd
     arguments = [part for name, value in start for part in ("--set", f"{name}={float(value)!r}")]
     lines = [f'acceleration_of_{k} = "d({name})"' for k, name in enumerate(outputs)]
     text = model + "\n[outputs]\n" + "\n".join(lines) + "\n"
-    table = _run([program, "run", "-", "--samples", "2", "--t-end", INSTANT, *arguments], text)
+    table = _run([program, "run", "-", "--rows", "2", "--t-end", INSTANT, *arguments], text)
     titles, first = (line.split(",") for line in table.splitlines()[:2])
     row = dict(zip(titles, first))
     return np.array([float(row[f"acceleration_of_{k}"]) for k in range(len(outputs))])

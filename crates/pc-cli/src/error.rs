@@ -121,7 +121,7 @@ pub enum CliError {
         model: String,
     },
     /// A frame is chosen where no single frame is written.
-    #[error("--at chooses a frame, which is written by itself to `-o FILE.svg`, FILE.png or FILE.pdf")]
+    #[error("--time chooses a frame, which is written by itself to `-o FILE.svg`, FILE.png or FILE.pdf")]
     NoFrame,
     /// A picture that could not be drawn.
     #[error(transparent)]

@@ -5,13 +5,14 @@
 //! `parameters` and `tables`, `frame`, `definitions`, `start` with the `points_of_contact`, `bodies`, the `tree` of bodies on joints and
 //! `external_force`, `brackets`, `joint_reactions`, `friction_of_contacts`, `constraints` with `constraint_treatment`, `body_reactions` and
 //! the names of a `resultant`, `action`, `event` and `events` with the `stops` of joints, and the quasi-velocities `given` in addition to those of the text;
-//! `trial`, `definite`, `inertia` and `orientations` check the start. A `function` and a `drawing` are assembled
-//! separately, on request.
+//! `trial`, `definite`, `inertia` and `orientations` check the start. A `function` and a `drawing`, with the `block`
+//! of a body, are assembled separately, on request.
 
 pub(crate) mod action;
 pub(crate) mod assemble;
 pub(crate) mod assembler;
 pub(crate) mod assembly;
+mod block;
 pub(crate) mod bodies;
 pub(crate) mod body_reactions;
 pub(crate) mod brackets;

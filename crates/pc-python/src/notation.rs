@@ -13,7 +13,7 @@ const PHRASES: [(&str, &str); 13] = [
     ),
     ("--set NAME=VALUE", "`start={NAME: VALUE}`"),
     ("with --set", "by `parameters`"),
-    ("--box NAME=FROM..TO", "`box={NAME: (FROM, TO)}`"),
+    ("--box NAME=FROM:TO", "`box={NAME: (FROM, TO)}`"),
     ("--starts N", "`starts`"),
     ("--at start", "`at=\"start\"`"),
     ("(--hold)", "(`hold`)"),

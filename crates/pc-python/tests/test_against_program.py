@@ -13,7 +13,7 @@ import chetaev
 @pytest.mark.parametrize("name", KINDS)
 def test_a_run_is_that_of_the_program(name: str, program: Callable[..., dict[str, Any]]) -> None:
     system = chetaev.Model.builtin(name).system()
-    written = program("run", name, "--no-verify", "--samples", "21")
+    written = program("run", name, "--no-verify", "--rows", "21")
     motion = system.run(samples=21)
     assert tuple(written) == motion.columns
     for column, values in written.items():
@@ -33,7 +33,7 @@ def test_a_sweep_is_that_of_the_program(
     method: str, program: Callable[..., dict[str, Any]], tmp_path: pathlib.Path
 ) -> None:
     members = 64 if method == "dop853" else 6
-    arguments = ("--random", "mg=normal(1,0.1)", "--random", "ω3=uniform(2,3)", "--samples", str(members), "--seed", "5")
+    arguments = ("--random", "mg=normal(1,0.1)", "--random", "ω3=uniform(2,3)", "--members", str(members), "--seed", "5")
     place = ("--method", method, "-o", str(tmp_path / "sweep.csv"))
     written = program("sweep", "heavy-top-lagrange", "--t-end", "2", *arguments, *place)
     system = chetaev.Model.builtin("heavy-top-lagrange").system()

@@ -10,7 +10,7 @@ use crate::attack::victim::{Finding, Victim};
 use crate::fuzz::random::Random;
 
 const RUN: &[&str] =
-    &["run", "heavy-top-lagrange", "--t-end", "40", "--samples", "4000", "--no-verify", "--every", "200"];
+    &["run", "heavy-top-lagrange", "--t-end", "40", "--rows", "4000", "--no-verify", "--every", "200"];
 const SWEEP: &[&str] = &["sweep", "heavy-top-lagrange", "--t-end", "2", "--vary", "mg=5:15:40"];
 
 /// Kills runs and sweeps so many times, each at another moment, and has them go on.

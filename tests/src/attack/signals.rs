@@ -37,12 +37,12 @@ const SWEEP: &[&str] = &["sweep", "heavy-top-lagrange", "--t-end", "2", "--vary"
 struct Writing(&'static [&'static [&'static str]], &'static [&'static str]);
 
 const WRITINGS: &[Writing] = &[
-    Writing(&[RUN, &["--samples", "4001", "-o", "out.csv"]], &["out.csv"]),
-    Writing(&[RUN, &["--samples", "40001", "-o", "out.csv"]], &["out.csv"]),
-    Writing(&[RUN, &["--samples", "4001", "-o", "out.json", "--plot", "out.svg"]], &["out.json", "out.svg"]),
-    Writing(&[RUN, &["--samples", "4001", "-o", "out.npz", "--plot", "out.pdf"]], &["out.npz", "out.pdf"]),
+    Writing(&[RUN, &["--rows", "4001", "-o", "out.csv"]], &["out.csv"]),
+    Writing(&[RUN, &["--rows", "40001", "-o", "out.csv"]], &["out.csv"]),
+    Writing(&[RUN, &["--rows", "4001", "-o", "out.json", "--plot", "out.svg"]], &["out.json", "out.svg"]),
+    Writing(&[RUN, &["--rows", "4001", "-o", "out.npz", "--plot", "out.pdf"]], &["out.npz", "out.pdf"]),
     Writing(
-        &[RUN, &["--samples", "4001", "-o", "out.parquet", "--plot", "out.png"]],
+        &[RUN, &["--rows", "4001", "-o", "out.parquet", "--plot", "out.png"]],
         &["out.parquet", "out.png"],
     ),
     Writing(&[RUN, &["-o", "out.csv", "--every", "100", "--checkpoint", "point"]], &["out.csv"]),

@@ -314,7 +314,7 @@ const COMMANDS: &[&[&str]] = &[
     &["derive", "--form", "canonical", "--format", "latex"],
     &["run", "--t-end", "0.01", "-o", "out.csv"],
     &["emit", "--lang", "c", "-o", "emitted"],
-    &["sweep", "--t-end", "0.01", "--random", "x=uniform(0,1)", "--samples", "2", "-o", "swept.csv"],
+    &["sweep", "--t-end", "0.01", "--random", "x=uniform(0,1)", "--members", "2", "-o", "swept.csv"],
 ];
 
 /// The program that was built with this one.

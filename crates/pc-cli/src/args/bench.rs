@@ -1,5 +1,6 @@
 //! Arguments of `pc bench`.
 
+use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
@@ -19,4 +20,7 @@ pub struct BenchArguments {
     /// How to print
     #[arg(long, default_value = "text")]
     pub format: Format,
+    /// Write to FILE instead of standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
 }

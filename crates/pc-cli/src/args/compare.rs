@@ -1,5 +1,6 @@
 //! Arguments of `pc compare`.
 
+use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
@@ -32,8 +33,8 @@ pub struct CompareArguments {
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = options::finite)]
     pub t_end: Option<f64>,
     /// Number of evenly spaced times at which to compare, start and end included [default: as for `pc run` of A]
-    #[arg(long, value_name = "N", value_parser = options::samples)]
-    pub samples: Option<usize>,
+    #[arg(long, value_name = "N", value_parser = options::rows)]
+    pub rows: Option<usize>,
     /// Tolerances and method.
     #[command(flatten)]
     pub integration: IntegrationArguments,
@@ -59,6 +60,9 @@ pub struct CompareArguments {
     /// Time limit in seconds for all work on each model [default: none]
     #[arg(long, value_name = "SECONDS", value_parser = options::seconds)]
     pub limit_time: Option<Duration>,
+    /// Write to FILE instead of standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
 }
 
 impl CompareArguments {
@@ -79,7 +83,7 @@ impl CompareArguments {
         Wishes {
             form: self.form.get(which).or(self.form.first()).copied(),
             t_end,
-            samples: self.samples,
+            samples: self.rows,
             ..self.integration.wishes()
         }
     }

@@ -22,14 +22,14 @@ Examples:
 pub(super) const RUN: &str = "\
 Examples:
   pc run my-model.toml -o motion.csv --plot motion.svg
-  pc run heavy-top-euler --t-end 20 --samples 2001 --set mg=0.5 -o top.npz
+  pc run heavy-top-euler --t-end 20 --rows 2001 --set mg=0.5 -o top.npz
   pc run chaplygin-sleigh --outputs reactions > sleigh.csv
   pc run stiff-sleigh --method bdf --checkpoint sleigh.check -o sleigh.csv";
 
 pub(super) const SWEEP: &str = "\
 Examples:
   pc sweep heavy-top-lagrange --vary mg=0.5:2:100 -o sweep.csv
-  pc sweep heavy-top-lagrange --samples 1000 --random \"I1=normal(1,0.05)\" --seed 7 -o cloud.npz
+  pc sweep heavy-top-lagrange --members 1000 --random \"I1=normal(1,0.05)\" --seed 7 -o cloud.npz
   pc sweep whipple-bicycle --of linearize --set roll=0 --vary v0=0:10:101 -o roots.csv
   pc sweep chaplygin-sleigh --of check --vary a=0,0.1,0.5 -o checks.csv";
 

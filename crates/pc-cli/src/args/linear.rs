@@ -64,7 +64,7 @@ pub struct LinearizeArguments {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:\n  \
                         pc equilibria furuta-pendulum\n  \
-                        pc equilibria double-spherical-pendulum --box α1=-4..4 --starts 100\n  \
+                        pc equilibria double-spherical-pendulum --box α1=-4:4 --starts 100\n  \
                         pc equilibria gravity-gradient --format json\n\
                         Newton's method starts from points that fill the box evenly, the same each time. What is found are equilibria; \
                         that there are no others is not proved. Angles are taken modulo 2π; cyclic coordinates stay at their start \
@@ -76,7 +76,7 @@ pub struct EquilibriaArguments {
     pub model: ModelArguments,
     /// Bounds of a coordinate or first-order state (repeatable) [default: for angles, one turn about the start; for others, 2
     /// (1 + |start|) on either side of the start, beyond which equilibria may still be found]
-    #[arg(long = "box", value_name = "NAME=FROM..TO", value_parser = bounds)]
+    #[arg(long = "box", value_name = "NAME=FROM:TO", value_parser = bounds)]
     pub bounds: Vec<Bounds>,
     /// Number of points from which Newton's method starts
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = starts)]
@@ -92,7 +92,7 @@ pub struct EquilibriaArguments {
     pub verify: VerifyArguments,
 }
 
-/// `NAME=FROM..TO`
+/// `NAME=FROM:TO`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bounds {
     /// The coordinate or first-order state.
@@ -112,9 +112,9 @@ fn starts(text: &str) -> Result<usize, String> {
 }
 
 fn bounds(text: &str) -> Result<Bounds, String> {
-    let usage = || "write NAME=FROM..TO, as in `--box x=-2..2`".to_owned();
+    let usage = || "write NAME=FROM:TO, as in `--box x=-2:2`".to_owned();
     let (name, range) = text.split_once('=').ok_or_else(usage)?;
-    let (low, high) = range.split_once("..").ok_or_else(usage)?;
+    let (low, high) = range.split_once(':').ok_or_else(usage)?;
     let (low, high) = (options::finite(low.trim())?, options::finite(high.trim())?);
     if low > high {
         return Err("the first bound must be the lower one".to_owned());
@@ -132,9 +132,9 @@ mod tests {
     #[test]
     fn boxes_are_read_or_refused() {
         let x = |low, high| Bounds { name: "x".to_owned(), low, high };
-        assert_eq!(bounds("x=-2..2"), Ok(x(-2.0, 2.0)));
-        assert_eq!(bounds("x = -.5 .. 1e3"), Ok(x(-0.5, 1e3)));
-        for wrong in ["x", "x=1", "x=1:2", "=1..2", "x=2..1", "x=1..inf", "x=..2"] {
+        assert_eq!(bounds("x=-2:2"), Ok(x(-2.0, 2.0)));
+        assert_eq!(bounds("x = -.5 : 1e3"), Ok(x(-0.5, 1e3)));
+        for wrong in ["x", "x=1", "x=1..2", "=1:2", "x=2:1", "x=1:inf", "x=:2", "x=1:2:3"] {
             assert!(bounds(wrong).is_err(), "{wrong}");
         }
         assert!(starts("0").is_err() && starts("1e3").is_err() && starts("64") == Ok(64));

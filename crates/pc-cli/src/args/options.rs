@@ -95,6 +95,9 @@ pub struct CheckArguments {
     /// How to print
     #[arg(long, default_value = "text")]
     pub format: Format,
+    /// Write to FILE instead of standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
 }
 
 /// Arguments of `pc derive`.
@@ -136,6 +139,9 @@ pub struct DeriveArguments {
     /// Verification.
     #[command(flatten)]
     pub verify: VerifyArguments,
+    /// Write to FILE instead of standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
 }
 
 /// Whether equations are compared with a second derivation before they are printed or written.
@@ -169,6 +175,9 @@ pub struct TheoryArguments {
     /// Verification.
     #[command(flatten)]
     pub verify: VerifyArguments,
+    /// Write to FILE instead of standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
 }
 
 /// The options of the search for events.
@@ -250,8 +259,8 @@ pub struct RunArguments {
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = finite)]
     pub t_end: Option<f64>,
     /// Number of evenly spaced rows, start and end included [default: the file's, or 201]
-    #[arg(long, value_name = "N", value_parser = samples)]
-    pub samples: Option<usize>,
+    #[arg(long, value_name = "N", value_parser = rows)]
+    pub rows: Option<usize>,
     /// Tolerances and method.
     #[command(flatten)]
     pub integration: IntegrationArguments,
@@ -302,7 +311,7 @@ impl RunArguments {
         Wishes {
             form: self.form,
             t_end: self.t_end,
-            samples: self.samples,
+            samples: self.rows,
             sensitivities: self.sensitivities.clone(),
             ..self.integration.wishes()
         }
@@ -412,7 +421,7 @@ pub struct ExportArguments {
     /// The model.
     #[command(flatten)]
     pub model: ModelArguments,
-    /// The file to write; standard output if it is not given
+    /// Write to FILE instead of standard output
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 }
@@ -509,7 +518,7 @@ fn part(text: &str) -> Result<f64, String> {
     }
 }
 
-pub(crate) fn samples(text: &str) -> Result<usize, String> {
+pub(crate) fn rows(text: &str) -> Result<usize, String> {
     match text.parse::<usize>() {
         Ok(count) if (2..=MOST_SAMPLES).contains(&count) => Ok(count),
         _ => Err(format!("write a whole number from 2 (start and end) to {MOST_SAMPLES}")),

@@ -21,8 +21,8 @@ pub struct ShownArguments {
     pub t_end: Option<f64>,
     /// Number of points on each curve, and of frames, evenly spaced in time, start and end included [default: the file's, but
     /// at least 601]
-    #[arg(long, value_name = "N", value_parser = options::samples)]
-    pub samples: Option<usize>,
+    #[arg(long, value_name = "N", value_parser = options::rows)]
+    pub rows: Option<usize>,
     /// Tolerances and method.
     #[command(flatten)]
     pub integration: IntegrationArguments,
@@ -48,7 +48,7 @@ pub struct ReportArguments {
     #[command(flatten)]
     pub shown: ShownArguments,
     /// Leave out the motion
-    #[arg(long, conflicts_with_all = ["t_end", "samples", "form", "project"])]
+    #[arg(long, conflicts_with_all = ["t_end", "rows", "form", "project"])]
     pub no_run: bool,
     /// Write the page to FILE.html instead of standard output
     #[arg(short, long, value_name = "FILE")]
@@ -61,7 +61,7 @@ pub struct ReportArguments {
                         pc animate spatial-chain -o chain.html\n  \
                         pc animate tilted-disk --t-end 20 > disk.html\n  \
                         pc animate tilted-disk -o disk.gif\n  \
-                        pc animate tilted-disk --at 12 -o disk.png\n\n\
+                        pc animate tilted-disk --time 12 -o disk.png\n\n\
                         What is drawn are bodies, joints and points, and the shapes of `[[draw]]` in the text of the model. The \
                         page needs nothing beside itself. A film shows 25 frames a second of a motion of up to 10 seconds, and a \
                         longer one in 10 seconds; a picture shows one frame. The same model gives the same bytes.")]
@@ -74,12 +74,12 @@ pub struct AnimateArguments {
     pub output: Option<PathBuf>,
     /// With a single frame: the one nearest to this time [default: the last]
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = options::finite)]
-    pub at: Option<f64>,
+    pub time: Option<f64>,
 }
 
 impl ShownArguments {
     /// The options of the motion.
     pub(crate) fn wishes(&self) -> Wishes {
-        Wishes { form: self.form, t_end: self.t_end, samples: self.samples, ..self.integration.wishes() }
+        Wishes { form: self.form, t_end: self.t_end, samples: self.rows, ..self.integration.wishes() }
     }
 }

@@ -23,7 +23,7 @@ use crate::args::steady::StateArguments;
 /// Arguments of `pc sweep`.
 #[derive(Clone, Debug, Args)]
 #[command(
-    group(ArgGroup::new("members").args(["vary", "random"]).required(true)),
+    group(ArgGroup::new("varied").args(["vary", "random"]).required(true)),
     after_help = format!("{}\n\n\
                   Members of a grid are all combinations of the values, the last --vary changing fastest. \
                   lognormal(m,s) is exp of normal(m,s).\n\
@@ -49,11 +49,11 @@ pub struct SweepArguments {
     #[arg(long, value_name = "NAME=FROM:TO:N", conflicts_with = "random")]
     pub vary: Vec<Vary>,
     /// Draw a parameter or start value: normal(m,s), uniform(a,b) or lognormal(m,s) (repeatable)
-    #[arg(long, value_name = "NAME=DISTRIBUTION", requires = "samples")]
+    #[arg(long, value_name = "NAME=DISTRIBUTION", requires = "members")]
     pub random: Vec<Random>,
     /// Number of randomly drawn members
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), requires = "random", conflicts_with = "vary")]
-    pub samples: Option<u64>,
+    pub members: Option<u64>,
     /// Seed of the random numbers
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub seed: u64,
@@ -67,7 +67,7 @@ pub struct SweepArguments {
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = options::finite)]
     pub t_end: Option<f64>,
     /// Write N rows for each member, evenly spaced, start and end included, instead of the last row and the drifts
-    #[arg(long, value_name = "N", value_parser = options::samples)]
+    #[arg(long, value_name = "N", value_parser = options::rows)]
     pub rows: Option<usize>,
     /// Tolerances and method.
     #[command(flatten)]
@@ -153,8 +153,8 @@ impl SweepArguments {
 
     /// What is varied, as specified by the options.
     pub(crate) fn variation(&self) -> Variation {
-        let SweepArguments { vary, random, samples, seed, .. } = self;
-        Variation { vary: vary.clone(), random: random.clone(), samples: *samples, seed: *seed }
+        let SweepArguments { vary, random, members, seed, .. } = self;
+        Variation { vary: vary.clone(), random: random.clone(), members: *members, seed: *seed }
     }
 
     /// What to compute for each member, and how.

@@ -14,7 +14,7 @@ use crate::bench::kernels::Derived;
 use crate::bench::measure::interleave;
 use crate::bench::page::Figures;
 use crate::error::CliError;
-use crate::output::standard_output::print;
+use crate::output::text::TextOutput;
 use crate::terminal::observer::Terminal;
 use pc_run::motion::remarks::say_moved;
 
@@ -23,7 +23,9 @@ use pc_run::motion::remarks::say_moved;
 /// # Errors
 /// [`CliError`] of the model; `FileError::Write`.
 pub fn command(arguments: &BenchArguments) -> Result<(), CliError> {
+    let place = TextOutput::at(arguments.output.as_deref())?;
     let model = input::open(&arguments.model)?;
+    input::keep_apart(&arguments.model, &model, [arguments.output.as_deref()])?;
     model.require_values()?;
     // Each derivation has the full memory limit; the time limit holds for all of them together.
     let fresh = || -> Model {
@@ -54,7 +56,7 @@ pub fn command(arguments: &BenchArguments) -> Result<(), CliError> {
         variants: &variants,
         times,
     };
-    print(|out| match arguments.format {
+    place.write(|out| match arguments.format {
         Format::Text => write!(out, "{}", visible(&figures.text())),
         Format::Json => writeln!(out, "{}", visible_json(&figures.json())),
     })

@@ -10,7 +10,7 @@ use crate::args::compare::CompareArguments;
 use crate::args::input;
 use crate::args::options::{Format, Setting};
 use crate::error::CliError;
-use crate::output::standard_output::print;
+use crate::output::text::TextOutput;
 use crate::terminal::observer::Terminal;
 
 /// Integrates both motions, and prints how far they are apart.
@@ -19,7 +19,13 @@ use crate::terminal::observer::Terminal;
 /// [`CompareError::Different`] where they are not the same; the failure of a motion, after the
 /// times that it reached are compared.
 pub fn command(arguments: &CompareArguments) -> Result<(), CliError> {
+    let place = TextOutput::at(arguments.output.as_deref())?;
     let (first, second) = models(arguments)?;
+    let output = arguments.output.as_deref();
+    input::keep_apart(&arguments.model(&arguments.first), &first, [output])?;
+    if let Some(name) = &arguments.second {
+        input::keep_apart(&arguments.model(name), &second, [output])?;
+    }
     let written = |model: &Model| model.document().simulation.t_end.as_ref().map(|t| t.value);
     let t_end = arguments.t_end.or(written(&first)).or(written(&second));
     let wishes = [arguments.wishes(0, t_end), arguments.wishes(1, t_end)];
@@ -29,7 +35,7 @@ pub fn command(arguments: &CompareArguments) -> Result<(), CliError> {
     }
     let question = arguments.question();
     let compared = Compared::of([&first, &second], [&wishes[0], &wishes[1]], &question, &Terminal)?;
-    print(|out| match arguments.format {
+    place.write(|out| match arguments.format {
         Format::Text => write!(out, "{}", visible(&compared.text())),
         Format::Json => writeln!(out, "{}", visible_json(&compared.json())),
     })?;

@@ -6,7 +6,7 @@ use pc_verify::Outlet;
 use crate::args::input;
 use crate::args::options::DeriveArguments;
 use crate::error::CliError;
-use crate::output::standard_output::print;
+use crate::output::text::TextOutput;
 use crate::terminal::observer::Terminal;
 use pc_run::motion::remarks::{say_changing_masses, say_dropped, say_moved};
 use pc_run::motion::verification::vouched;
@@ -17,7 +17,9 @@ use pc_run::motion::verification::vouched;
 /// [`CliError`].
 pub fn command(arguments: &DeriveArguments) -> Result<(), CliError> {
     let is_hamel = arguments.form == Some(Form::Hamel);
+    let place = TextOutput::at(arguments.output.as_deref())?;
     let model = input::open_in(&arguments.model, &arguments.velocities, is_hamel)?;
+    input::keep_apart(&arguments.model, &model, [arguments.output.as_deref()])?;
     let written = model.document().simulation.form.as_ref().map(|form| form.value.into());
     let form = arguments.form.or(written).unwrap_or(Form::Poincare);
     if arguments.reactions && !form.has_reactions() {
@@ -41,5 +43,5 @@ pub fn command(arguments: &DeriveArguments) -> Result<(), CliError> {
         let outlet = if arguments.reactions { Outlet::PageWithReactions(form) } else { Outlet::Page(form) };
         vouched(&model, &assembly, outlet, &Terminal)?;
     }
-    print(|out| write!(out, "{page}"))
+    place.write(|out| write!(out, "{page}"))
 }

@@ -60,7 +60,7 @@ const NO_END: &str = "There is no motion: the text says no end of time, and --t-
 pub fn animate(arguments: &AnimateArguments) -> Result<(), CliError> {
     let destination = Destination::shown(arguments.output.as_deref())?;
     let is_frame = matches!(destination.encoding(), Encoding::Svg | Encoding::Png | Encoding::Pdf);
-    if arguments.at.is_some() && !is_frame {
+    if arguments.time.is_some() && !is_frame {
         return Err(CliError::NoFrame);
     }
     let model = kept(input::open(&arguments.shown.model)?, &arguments.shown)?;
@@ -76,7 +76,7 @@ pub fn animate(arguments: &AnimateArguments) -> Result<(), CliError> {
     match destination.encoding() {
         Encoding::Gif => destination.write_film(stills(times).into_iter().map(drawing))?,
         _ if is_frame => {
-            let at = arguments.at.map_or(times.len() - 1, |t| nearest(times, t));
+            let at = arguments.time.map_or(times.len() - 1, |t| nearest(times, t));
             destination.write_plot(&drawing(at))?;
         }
         _ => destination.write_page(&animation(title, &scene))?,
@@ -104,6 +104,6 @@ fn kept(mut model: Model, shown: &ShownArguments) -> Result<Model, CliError> {
 fn integrated(model: &Model, assembly: &Assembly<'_>, shown: &ShownArguments) -> Result<Run, CliError> {
     let wishes = shown.wishes();
     let rows = Plan::of(model, &wishes)?.samples;
-    let wishes = Wishes { samples: Some(shown.samples.unwrap_or(rows.max(SMOOTH))), ..wishes };
+    let wishes = Wishes { samples: Some(shown.rows.unwrap_or(rows.max(SMOOTH))), ..wishes };
     Ok(Run::of_assembly(model, assembly, &wishes, &Besides::shown(), None, &Terminal)?)
 }

@@ -7,7 +7,7 @@ use pc_verify::Outlet;
 use crate::args::input;
 use crate::args::options::TheoryArguments;
 use crate::error::CliError;
-use crate::output::standard_output::print;
+use crate::output::text::TextOutput;
 use crate::terminal::observer::Terminal;
 use pc_run::motion::remarks::{say_dropped, say_moved};
 use pc_run::motion::verification::vouched;
@@ -20,7 +20,9 @@ pub fn command(arguments: &TheoryArguments) -> Result<(), CliError> {
     if !arguments.canonical.len().is_multiple_of(2) {
         return Err(CliError::NotInPairs);
     }
+    let place = TextOutput::at(arguments.output.as_deref())?;
     let model = input::open(&arguments.model)?;
+    input::keep_apart(&arguments.model, &model, [arguments.output.as_deref()])?;
     let graph = model.graph();
     let assembly = model.assemble(&graph)?;
     say_dropped(&assembly, &Terminal);
@@ -35,5 +37,5 @@ pub fn command(arguments: &TheoryArguments) -> Result<(), CliError> {
     if !arguments.verify.no_verify {
         vouched(&model, &assembly, Outlet::Equations(Variables::QuasiVelocities), &Terminal)?;
     }
-    print(|out| write!(out, "{page}"))
+    place.write(|out| write!(out, "{page}"))
 }

@@ -154,8 +154,8 @@ impl Case<'_> {
             self.places.iter().map(|(i, expression)| format!("shown{i} = \"{expression}\"\n")).collect();
         fs::write(&file, format!("{}\n[outputs]\n{outputs}", self.text)).expect("written");
         let path = file.to_str().expect("UTF-8");
-        let page = pc(&["report", path, "--samples", SAMPLES]);
-        let table = pc(&["run", path, "--samples", SAMPLES]);
+        let page = pc(&["report", path, "--rows", SAMPLES]);
+        let table = pc(&["run", path, "--rows", SAMPLES]);
         let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
         for dark in [false, true] {
             for look in looks(chromium, &page, dark) {

@@ -40,7 +40,7 @@ fn a_second_run_has_the_same_numbers_and_remarks() {
     let place = TempDir::new().expect("a directory");
     let cache = place.path().join("not/there/yet");
     for model in ["chaplygin-sleigh", "bouncing-ball", "four-bar-loop", "stick-slip-block"] {
-        let arguments = [model, "--samples", "5"];
+        let arguments = [model, "--rows", "5"];
         let (plain, _) = run(None, &arguments);
         let known = files(&cache).len();
         let (first, said) = run(Some(&cache), &arguments);
@@ -62,7 +62,7 @@ fn other_values_forms_and_texts_are_derived_anew() {
                 lagrangian.potential = \"k*x^2/2\"\nsimulation.t_end = 1.0\n";
     fs::write(&file, text).expect("a file");
     let of = |arguments: &[&str]| {
-        let arguments = [&[path, "--samples", "2"], arguments].concat();
+        let arguments = [&[path, "--rows", "2"], arguments].concat();
         let (plain, _) = run(None, &arguments);
         let (found, said) = run(Some(cache.path()), &arguments);
         assert_eq!(found, plain);
@@ -83,7 +83,7 @@ fn other_values_forms_and_texts_are_derived_anew() {
 #[test]
 fn what_is_damaged_is_derived_again_and_replaced() {
     let cache = TempDir::new().expect("a directory");
-    let arguments = ["damped-oscillator", "--samples", "3"];
+    let arguments = ["damped-oscillator", "--rows", "3"];
     let (plain, _) = run(Some(cache.path()), &arguments);
     let [file] = &files(cache.path())[..] else { panic!("one file") };
     let whole = fs::read(file).expect("a file");
@@ -103,7 +103,7 @@ fn a_directory_that_cannot_be_used_does_not_stop_a_run() {
     let place = TempDir::new().expect("a directory");
     let file = place.path().join("file");
     fs::write(&file, "").expect("a file");
-    let (found, said) = run(Some(&file.join("below")), &["damped-oscillator", "--samples", "3"]);
-    assert_eq!(found, run(None, &["damped-oscillator", "--samples", "3"]).0);
+    let (found, said) = run(Some(&file.join("below")), &["damped-oscillator", "--rows", "3"]);
+    assert_eq!(found, run(None, &["damped-oscillator", "--rows", "3"]).0);
     assert!(said.contains("cannot be "), "{said}");
 }

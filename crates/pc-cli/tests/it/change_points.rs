@@ -123,7 +123,7 @@ fn a_parallelogram_turns_through_its_change_points() {
 fn the_velocity_chooses_the_branch() {
     let model = particle("y*(y - x)", (-1.0, 0.0), (0.0, 0.0), "potential = \"x^2/2\"");
     for method in ["auto", "adams", "bdf"] {
-        let options = ["--t-end", "20", "--samples", "57", "--method", method];
+        let options = ["--t-end", "20", "--rows", "57", "--method", method];
         let (code, table, said) = run(&model, &options);
         assert_eq!(code, Some(0), "{said}");
         for [t, x, y] in rows(&table, ["t", "x", "y"]) {
@@ -139,7 +139,7 @@ fn the_place_may_be_an_event() {
     let model =
         format!("{}\n{place}\n", particle("y*(y - x)", (-1.0, 0.0), (0.0, 0.0), "potential = \"x^2/2\""));
     for end in ["6", "-6"] {
-        let (code, table, said) = run(&model, &["--t-end", end, "--samples", "7"]);
+        let (code, table, said) = run(&model, &["--t-end", end, "--rows", "7"]);
         assert_eq!(code, Some(0), "{said}");
         assert!(said.contains("place  2 times: "), "{said}");
         for [t, x] in rows(&table, ["t", "x"]) {
@@ -156,7 +156,7 @@ fn a_sharp_corner_is_no_change_point() {
     // The velocity along the hyperbola, of size 1 up to 1e-16.
     let model = particle("x*y - 1e-8", (x, y), (1.0, -1e-8), "");
     for method in ["auto", "adams"] {
-        let (code, table, said) = run(&model, &["--t-end", "2", "--samples", "5", "--method", method]);
+        let (code, table, said) = run(&model, &["--t-end", "2", "--rows", "5", "--method", method]);
         assert_eq!(code, Some(0), "{said}");
         let end = rows(&table, ["x", "y"]).pop().expect("a row");
         // The corner is shorter than the asymptotes by some 1e-4.
@@ -168,7 +168,7 @@ fn a_sharp_corner_is_no_change_point() {
 #[test]
 fn a_change_point_cannot_be_differentiated() {
     let model = format!("[parameters]\ng = 9.81\n{}", FOUR_BAR.replace("-9.81", "\"-g\""));
-    let options = ["--t-end", "3", "--samples", "4", "--sensitivities", "g", "--method", "dop853"];
+    let options = ["--t-end", "3", "--rows", "4", "--sensitivities", "g", "--method", "dop853"];
     let (code, table, said) = run(&model, &options);
     assert_eq!((code, table.lines().count()), (Some(5), 2), "{said}");
     insta::assert_snapshot!(without_numbers(&failure(&said)));
@@ -189,8 +189,7 @@ fn without_numbers(text: &str) -> String {
 fn a_proved_integral_that_drifts_is_an_error() {
     let model = "[coordinates]\nx = 1.0\n[quasi_velocities]\nu = 0.0\n[kinematics]\nx = \"u\"\n\
                  [lagrangian]\nkinetic = \"u^2/2\"\npotential = \"x^4/4 + 1000\"\n";
-    let options =
-        ["--t-end", "5000", "--samples", "11", "--rtol", "1e-4", "--atol", "1e-4", "--method", "bdf"];
+    let options = ["--t-end", "5000", "--rows", "11", "--rtol", "1e-4", "--atol", "1e-4", "--method", "bdf"];
     let (code, table, said) = run(model, &options);
     assert_eq!((code, table.lines().count()), (Some(5), 12), "{said}");
     insta::assert_snapshot!(failure(&said));
@@ -234,7 +233,7 @@ fn small_motions_and_rows_in_step_with_a_motion_are_no_loss() {
     }
     let spring = "[coordinates]\nx = 1.0\n[quasi_velocities]\nu = 0.0\n[kinematics]\nx = \"u\"\n\
                   [lagrangian]\nkinetic = \"u^2/2\"\npotential = \"2*pi^2*x^2\"\n";
-    let (code, _, said) = run(spring, &["--t-end", "50", "--samples", "51"]);
+    let (code, _, said) = run(spring, &["--t-end", "50", "--rows", "51"]);
     assert_eq!(code, Some(0), "{said}");
 }
 

@@ -114,7 +114,7 @@ fn killed_often(model: &str, options: &[&str], t_end: f64, signals: &[&str], lea
 #[cfg(unix)]
 #[test]
 fn a_run_killed_again_and_again_gives_the_same_bytes() {
-    let options = ["--samples", "40", "--every", "100", "--rtol", "1e-8"];
+    let options = ["--rows", "40", "--every", "100", "--rtol", "1e-8"];
     let signals = ["-KILL", "-TERM", "-INT", "-KILL", "-KILL", "-TERM", "-KILL", "-INT"];
     let (run, undisturbed) = killed_often("heavy-top-lagrange", &options, 60_000.0, &signals, 4);
     // From the last checkpoint of a complete run, with another place for the next ones.
@@ -143,17 +143,7 @@ fn a_resumed_run_depends_only_on_the_checkpoint() {
     ] {
         fs::write(model, text).expect("written");
         let options = [
-            "--t-end",
-            "60",
-            "--samples",
-            "30",
-            "--every",
-            "40",
-            "--form",
-            form,
-            "--method",
-            method,
-            "--rtol",
+            "--t-end", "60", "--rows", "30", "--every", "40", "--form", form, "--method", method, "--rtol",
             "1e-7",
         ];
         let run = Run::new(model, &options);
@@ -172,7 +162,7 @@ fn a_resumed_run_depends_only_on_the_checkpoint() {
 
 #[test]
 fn checkpoints_change_a_run_within_its_tolerance() {
-    let run = Run::new("heavy-top-lagrange", &["--t-end", "10", "--samples", "11"]);
+    let run = Run::new("heavy-top-lagrange", &["--t-end", "10", "--rows", "11"]);
     let saved = run.whole("a.csv", "--checkpoint", "a.check", &["--every", "50"]);
     let plain = run.whole("a.csv", "--plot", "a.svg", &[]);
     let numbers = |csv: &[u8]| -> Vec<f64> {
@@ -190,7 +180,7 @@ fn checkpoints_change_a_run_within_its_tolerance() {
 
 #[test]
 fn foreign_checkpoints_are_refused() {
-    let run = Run::new("heavy-top-lagrange", &["--t-end", "30", "--samples", "5"]);
+    let run = Run::new("heavy-top-lagrange", &["--t-end", "30", "--rows", "5"]);
     let undisturbed = run.whole("a.csv", "--checkpoint", "a.check", &["--every", "20"]);
     let bytes = fs::read(run.at("a.check")).expect("a checkpoint");
     for k in 0..50 {
@@ -216,7 +206,7 @@ fn foreign_checkpoints_are_refused() {
     ] {
         run.refused("a.check", &more, mention);
     }
-    let other = Run::new("heavy-top-euler", &["--t-end", "30", "--samples", "5"]);
+    let other = Run::new("heavy-top-euler", &["--t-end", "30", "--rows", "5"]);
     fs::copy(run.at("a.check"), other.at("a.check")).expect("copied");
     other.refused("a.check", &[], "the checkpoint is from a run with");
     let nowhere = Run::new("euler-top", &["--every", "10"]);
@@ -266,8 +256,7 @@ const WITH_EVENTS: [(&str, &[&str]); 4] = [
 #[test]
 fn a_run_with_events_gives_the_same_bytes_from_each_checkpoint() {
     for (model, options) in WITH_EVENTS {
-        let run =
-            Run::new(model, &[options, &["--samples", "40", "--every", "97", "--rtol", "1e-7"]].concat());
+        let run = Run::new(model, &[options, &["--rows", "40", "--every", "97", "--rtol", "1e-7"]].concat());
         let (checkpoints, json) = seen(&run, "a.json");
         let csv = run.whole("a.csv", "--checkpoint", "a.check", &[]);
         let text = String::from_utf8(json.clone()).expect("UTF-8");
@@ -285,7 +274,7 @@ fn a_run_with_events_gives_the_same_bytes_from_each_checkpoint() {
 #[cfg(unix)]
 #[test]
 fn a_run_with_events_killed_again_and_again_gives_the_same_bytes() {
-    let options = ["--set", "e=1", "--samples", "40", "--every", "97"];
+    let options = ["--set", "e=1", "--rows", "40", "--every", "97"];
     killed_often("bouncing-ball", &options, 3000.0, &["-KILL", "-INT", "-TERM", "-KILL"], 2);
 }
 
@@ -373,7 +362,7 @@ fn energies(csv: &[u8]) -> Vec<(f64, f64)> {
 #[test]
 fn the_kept_energy_is_that_after_the_last_bounce() {
     let file = ball("{ \"y'\" = \"-0.8*y'\" }");
-    let options = ["--t-end", "2", "--samples", "41", "--every", "10", "--project", "energy"];
+    let options = ["--t-end", "2", "--rows", "41", "--every", "10", "--project", "energy"];
     let run = Run::new(file.path().to_str().expect("UTF-8"), &options);
     let csv = run.whole("a.csv", "--checkpoint", "a.check", &[]);
     // The ball lands after √(2/9.81), and a flight that begins with the speed v takes 2 v/9.81.
@@ -396,7 +385,7 @@ fn the_kept_energy_is_that_after_the_last_bounce() {
 fn a_run_that_keeps_the_energy_gives_the_same_bytes_from_each_checkpoint() {
     let file = ball("{ \"y'\" = \"-y'\", \"x'\" = \"3 - x'\" }");
     let options =
-        ["--t-end", "4000", "--samples", "60", "--every", "97", "--rtol", "1e-7", "--project", "energy"];
+        ["--t-end", "4000", "--rows", "60", "--every", "97", "--rtol", "1e-7", "--project", "energy"];
     let run = Run::new(file.path().to_str().expect("UTF-8"), &options);
     let (checkpoints, csv) = seen(&run, "a.csv");
     assert!(checkpoints.len() > 1, "it is over too soon: {}", checkpoints.len());

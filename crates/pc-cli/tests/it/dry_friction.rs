@@ -41,7 +41,7 @@ fn blocks(count: usize) -> String {
 #[test]
 fn blocks_slide_until_they_stop() {
     for count in [3, 7] {
-        let end = run(&blocks(count), &["--t-end", "6", "--samples", "7"]);
+        let end = run(&blocks(count), &["--t-end", "6", "--rows", "7"]);
         for i in 1..=count {
             // The tolerances are 1e-9.
             let (way, expected) = (last(&end, &format!("b{i}")), 4.0 / i as f64);
@@ -71,7 +71,7 @@ fn fingers(count: usize, friction: f64) -> String {
 
 #[test]
 fn sixteen_joints_stay_where_friction_holds_them() {
-    let end = run(&fingers(4, 1.0), &["--t-end", "1000", "--samples", "11"]);
+    let end = run(&fingers(4, 1.0), &["--t-end", "1000", "--rows", "11"]);
     for i in 0..16 {
         let angle = last(&end, &format!("f{i}"));
         assert!(angle.abs() < 1e-6, "f{i} crept to {angle}");
@@ -91,7 +91,7 @@ fn energy_is_lost_to_friction_alone() {
                 [bodies.f]\nparent = \"u\"\nmass = 0.5\ncenter = [0, 0, -0.4]\ninertia = [0.01, 0.01, 0.01]\n\
                 joint = { kind = \"revolute\", axis = [0, 1, 0], at = [0, 0, -1], friction = 0.3 }\n\
                 [states]\nwork = { rate = \"0.4*abs(u') + 0.3*abs(f')\" }\n";
-    let end = run(text, &["--t-end", "30", "--samples", "301"]);
+    let end = run(text, &["--t-end", "30", "--rows", "301"]);
     let columns = end["columns"].as_array().unwrap();
     let [energy, work] =
         ["energy", "work"].map(|name| columns.iter().position(|column| column == name).unwrap());
@@ -115,9 +115,9 @@ fn friction_of_a_geared_joint_holds_the_one_that_it_follows() {
         )
     };
     // 2 g < 4 · 0.5 holds; else (2 + 16/4) x'' = 2 g − 2.
-    let held = run(&text(0.9), &["--t-end", "5", "--samples", "3"]);
+    let held = run(&text(0.9), &["--t-end", "5", "--rows", "3"]);
     assert!(last(&held, "block").abs() < 1e-9);
-    let slides = run(&text(4.0), &["--t-end", "3", "--samples", "3"]);
+    let slides = run(&text(4.0), &["--t-end", "3", "--rows", "3"]);
     let expected = (8.0 - 2.0) / 6.0 * 9.0 / 2.0;
     assert!((last(&slides, "block") - expected).abs() < 1e-7);
     assert!((last(&slides, "wheel") - 4.0 * expected).abs() < 1e-6);
@@ -137,7 +137,7 @@ fn bristles(pull: &str) -> String {
 /// it breaks loose at F_s; under a constant one above F_s it comes to the speed at which g(v) + σ_2 v is the force.
 #[test]
 fn bristles_bend_and_slip() {
-    let bdf = ["--samples", "1501", "--method", "bdf"];
+    let bdf = ["--rows", "1501", "--method", "bdf"];
     let slow = run(&bristles("0.1*t"), &[&["--t-end", "15"], &bdf[..]].concat());
     let rows = slow["rows"].as_array().unwrap();
     let at = |row: &Value, place: usize| row[place].as_f64().unwrap();

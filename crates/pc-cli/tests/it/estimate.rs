@@ -161,7 +161,7 @@ fn rows_are_held_in_memory_or_refused() {
     let directory = tempfile::tempdir().unwrap();
     fs::write(directory.path().join("model.toml"), OSCILLATOR).unwrap();
     let arguments =
-        ["run", "model.toml", "--samples", "1000000", "-o", "run.csv", "--limit-memory", "64M", "--estimate"];
+        ["run", "model.toml", "--rows", "1000000", "-o", "run.csv", "--limit-memory", "64M", "--estimate"];
     let output = pc(directory.path(), &arguments);
     assert_eq!(output.status.code(), Some(4));
     let said = String::from_utf8(output.stderr).unwrap();

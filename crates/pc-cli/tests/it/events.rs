@@ -270,7 +270,7 @@ fn a_terminal_zero_before_an_edge_ends_the_run() {
 
 #[test]
 fn bounces_that_accumulate_end_a_run_with_their_limit() {
-    let output = pc("", &["run", "bouncing-ball", "--t-end", "9", "--samples", "10", "--set", "e=0.5"]);
+    let output = pc("", &["run", "bouncing-ball", "--t-end", "9", "--rows", "10", "--set", "e=0.5"]);
     assert_eq!(output.status.code(), Some(5));
     assert_eq!(
         String::from_utf8_lossy(&output.stdout).lines().count(),

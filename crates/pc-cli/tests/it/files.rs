@@ -187,8 +187,8 @@ const FULL: &str = "ulimit -f 16";
 fn rows_that_fit_on_a_full_disk_are_kept_beside_the_file() {
     let place = Place::new();
     fs::write(place.at("a.csv"), "old").expect("written");
-    let whole = table(&place, &["--samples", "1000"]);
-    let output = place.shell(FULL, &["run", "euler-top", "--samples", "1000", "-o", "a.csv"]);
+    let whole = table(&place, &["--rows", "1000"]);
+    let output = place.shell(FULL, &["run", "euler-top", "--rows", "1000", "-o", "a.csv"]);
     let (text, end) = (said(&output), "pc: cannot write a.csv; what could be written of it is in ");
     let (summary, message) = text.split_once(end).expect(&text);
     assert_eq!(output.status.code(), Some(6));
@@ -200,7 +200,7 @@ fn rows_that_fit_on_a_full_disk_are_kept_beside_the_file() {
     assert_eq!(fs::read(place.at("a.csv")).expect("the old one"), b"old");
     assert_eq!(place.entries(), (vec!["a.csv".into(), "a.csv.partial".into()], Vec::new()), "nothing else");
     // A kept part is never overwritten.
-    let again = place.shell(FULL, &["run", "euler-top", "--samples", "999", "-o", "a.csv"]);
+    let again = place.shell(FULL, &["run", "euler-top", "--rows", "999", "-o", "a.csv"]);
     assert_eq!(again.status.code(), Some(6));
     assert!(fs::read(place.at("a.csv.partial")).expect("a part") == part);
     // Part of a picture is of no use, and is not kept.
@@ -342,7 +342,7 @@ fn rows_beyond_the_memory_limit_are_refused_in_advance() {
     let place = Place::new();
     let message = "pc: 10000000 rows of 11 numbers would take 840 MiB, more than the limit of 512 MiB; ask for fewer, give \
                    --limit-memory 840M, or for a single motion only -o FILE.csv, whose rows are written as they are computed\n";
-    let arguments = ["run", "euler-top", "--samples", "10000000", "--limit-memory", "512M", "-o", "a.json"];
+    let arguments = ["run", "euler-top", "--rows", "10000000", "--limit-memory", "512M", "-o", "a.json"];
     ends(&mut place.pc(&arguments), 4, message);
     let message = "pc: 10000000 rows of 96 numbers would take 7325 MiB, more than the limit of 4096 MiB; ask for fewer, \
                    give --limit-memory 7325M, or for a single motion only -o FILE.csv, whose rows are written as they are computed\n";
@@ -353,12 +353,12 @@ fn rows_beyond_the_memory_limit_are_refused_in_advance() {
 }
 
 /// Many rows, with a memory limit below their size.
-const MANY: [&str; 6] = ["run", "euler-top", "--samples", "200000", "--limit-memory", "16M"];
+const MANY: [&str; 6] = ["run", "euler-top", "--rows", "200000", "--limit-memory", "16M"];
 
 #[test]
 fn rows_beyond_the_memory_limit_are_written_during_the_run() {
     let place = Place::new();
-    let held = place.pc(&["run", "euler-top", "--samples", "200000"]).output().expect("pc starts");
+    let held = place.pc(&["run", "euler-top", "--rows", "200000"]).output().expect("pc starts");
     let message = "pc: 200000 rows of 11 numbers would take 17 MiB, more than the limit of 16 MiB; ask for fewer, give \
                    --limit-memory 17M, or for a single motion only -o FILE.csv, whose rows are written as they are computed\n";
     ends(&mut place.pc(&MANY), 4, message);
@@ -392,7 +392,7 @@ fn rows_written_during_the_run_end_with_the_motion() {
 fn rows_written_during_the_run_are_kept_on_a_full_disk() {
     let place = Place::new();
     fs::write(place.at("a.csv"), "old").expect("written");
-    let held = place.pc(&["run", "euler-top", "--samples", "200000"]).output().expect("pc starts").stdout;
+    let held = place.pc(&["run", "euler-top", "--rows", "200000"]).output().expect("pc starts").stdout;
     let output = place.shell("ulimit -f 6000", &[&MANY[..], &["-o", "a.csv"]].concat());
     let message = "pc: cannot write a.csv; what could be written of it is in ";
     assert!(output.status.code() == Some(6) && said(&output).contains(message), "{}", said(&output));
@@ -407,7 +407,7 @@ fn rows_written_during_the_run_are_kept_on_a_full_disk() {
 fn a_limit_on_the_size_of_files_is_an_error_of_the_result() {
     let place = Place::new();
     fs::write(place.at("a.json"), "old").expect("written");
-    let run = ["run", "euler-top", "--samples", "1000"];
+    let run = ["run", "euler-top", "--rows", "1000"];
     let refused = |before: &str, arguments: &[&str], file: &str| {
         let output = place.shell(before, &[&run[..], arguments].concat());
         let message = format!("pc: cannot write {file}\n  because: File too large (os error 27)\n");
@@ -425,7 +425,7 @@ fn leftovers_of_a_run_killed_while_writing_are_removed_by_the_next_one() {
     let place = Place::new();
     fs::write(place.at("a.csv"), "old").expect("written");
     for _ in 0..5 {
-        let long = ["run", "euler-top", "--t-end", "1e7", "--samples", "1000000", "-o", "a.csv"];
+        let long = ["run", "euler-top", "--t-end", "1e7", "--rows", "1000000", "-o", "a.csv"];
         let mut child = started(place.pc(&long).stderr(Stdio::null()));
         let has_rows = |name: &String| {
             name.ends_with(".part") && fs::metadata(place.at(name)).is_ok_and(|part| part.len() > 0)

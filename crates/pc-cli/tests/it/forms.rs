@@ -75,7 +75,7 @@ fn coefficients_of_voronets_are_printed() {
 /// run is compared with a second derivation.
 #[test]
 fn runs_show_the_columns_of_the_model() {
-    let sleigh = ["run", "chaplygin-sleigh", "--samples", "3"];
+    let sleigh = ["run", "chaplygin-sleigh", "--rows", "3"];
     let header = |more: &[&str]| {
         let output = pc(&[&sleigh, more].concat());
         let summary = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -216,7 +216,7 @@ fn reactions_of_position_constraints_are_formulas() {
     assert_eq!(object["reaction_forces"]["z'"], "2*z*λ_sphere");
     let written = object["reactions"]["λ_sphere"].as_str().expect("a formula").to_owned();
 
-    let table = said(&["run", model, "--samples", "2", "--outputs", "reactions"]);
+    let table = said(&["run", model, "--rows", "2", "--outputs", "reactions"]);
     let row: std::collections::BTreeMap<String, String> = last_row(&table).into_iter().collect();
     let of = |name: &str| row[name].parse::<f64>().expect("a number");
     let squares = |names: [&str; 3]| names.map(|name| of(name).powi(2)).iter().sum::<f64>();
@@ -239,7 +239,7 @@ fn reactions_of_position_constraints_are_formulas() {
 fn voronets_equations_have_the_same_motion() {
     for model in ["chaplygin-sleigh", "tilted-disk", "snakeboard", "voronets", "charged-particle"] {
         let run = |form: &str| {
-            let end = ["--t-end", "0.5", "--samples", "2", "--rtol", "1e-11", "--form", form];
+            let end = ["--t-end", "0.5", "--rows", "2", "--rtol", "1e-11", "--form", form];
             last_row(&said(&[&["run", model][..], &end].concat()))
         };
         for ((name, own), (other, value)) in run("poincare").iter().zip(run("voronets")) {
@@ -384,7 +384,7 @@ fn sweeps_have_the_columns_and_numbers_of_runs_in_each_form() {
             };
             let swept = sweep("last.csv", &["--rows", "3"]);
             assert_eq!(swept.lines().count(), 1 + 2 * 3, "{model} {form}: {swept}");
-            let (swept, run_in_rows) = (last_row(&swept), run(&["--samples", "3"]));
+            let (swept, run_in_rows) = (last_row(&swept), run(&["--rows", "3"]));
             let run = run(&[]);
             assert_eq!(swept[3..3 + run.len()], run_in_rows, "{model} {form}");
             let names: Vec<&str> = swept[3 + run.len()..].iter().map(|(name, _)| name.as_str()).collect();
@@ -433,7 +433,7 @@ fn a_model_that_is_wrong_only_as_it_is_has_columns() {
     let table = std::fs::read_to_string(path("a.csv")).expect("a table");
     let refused = table.lines().nth(1).expect("a first member");
     assert!(refused.contains(",refused,NaN,NaN,"), "{table}");
-    let run = said(&[&["run", &model, "--samples", "2", "--set", "m=2"][..], &common].concat());
+    let run = said(&[&["run", &model, "--rows", "2", "--set", "m=2"][..], &common].concat());
     let run = last_row(&run);
     assert_eq!(last_row(&table)[3..3 + run.len()], run);
     assert_eq!(run[1].0, "r");

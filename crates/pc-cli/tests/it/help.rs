@@ -84,7 +84,7 @@ fn the_examples_run() {
                 continue;
             }
             let line =
-                line.replace("--seconds 10", "--seconds 0.1").replace("--samples 1000 ", "--samples 10 ");
+                line.replace("--seconds 10", "--seconds 0.1").replace("--members 1000 ", "--members 10 ");
             let script = format!("set -e; pc() {{ \"$PC\" \"$@\"; }}; {line}");
             let mut shell = Command::new("bash");
             shell.args(["-c", &script]).env("PC", env!("CARGO_BIN_EXE_pc")).current_dir(here);

@@ -32,7 +32,7 @@ impl Place {
     /// `pc` in the directory, with a motion to `t_end` that takes minutes or hours.
     fn pc(&self, arguments: &[&str], t_end: &str) -> Reaped {
         let mut command = Command::new(env!("CARGO_BIN_EXE_pc"));
-        command.args(arguments).args(["--t-end", t_end, "--samples", "1000000"]).current_dir(self.0.path());
+        command.args(arguments).args(["--t-end", t_end, "--rows", "1000000"]).current_dir(self.0.path());
         command.env("TMPDIR", self.1.path()).stdin(Stdio::null()).stdout(Stdio::null());
         started(command.stderr(Stdio::piped()))
     }

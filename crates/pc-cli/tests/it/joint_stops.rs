@@ -64,7 +64,7 @@ fn ball(restitution: f64, start: f64) -> String {
 #[test]
 fn a_ball_bounces_until_it_lies() {
     for e in [0.8, 0.5, 0.1] {
-        let end = run(&ball(e, 1.0), &["--t-end", "20", "--samples", "21"]);
+        let end = run(&ball(e, 1.0), &["--t-end", "20", "--rows", "21"]);
         let bounces = times(&end, "ball_lower");
         let mut expected = 1.0;
         for (k, &time) in bounces.iter().take(6).enumerate() {
@@ -83,11 +83,11 @@ fn a_ball_bounces_until_it_lies() {
 
 #[test]
 fn a_ball_without_rebound_lies_at_once_and_one_without_loss_goes_on() {
-    let lies = run(&ball(0.0, 1.0), &["--t-end", "5", "--samples", "3"]);
+    let lies = run(&ball(0.0, 1.0), &["--t-end", "5", "--rows", "3"]);
     assert_eq!(times(&lies, "ball_lower").len(), 1);
     assert_near(slides(&lies, "ball")[0].0, 1.0, 1e-9);
     assert!(last(&lies, "ball").abs() < 1e-12);
-    let bounces = run(&ball(1.0, 1.0), &["--t-end", "20", "--samples", "3"]);
+    let bounces = run(&ball(1.0, 1.0), &["--t-end", "20", "--rows", "3"]);
     let all = times(&bounces, "ball_lower");
     assert_eq!(all.len(), 10);
     all.iter().zip(0..).for_each(|(&time, k)| assert_near(time, 1.0 + 2.0 * f64::from(k), 1e-7));
@@ -98,7 +98,7 @@ fn a_ball_without_rebound_lies_at_once_and_one_without_loss_goes_on() {
 #[test]
 fn what_lies_on_a_stop_stays_there() {
     for method in ["auto", "adams", "bdf", "dop853"] {
-        let lies = run(&ball(0.5, 0.0), &["--t-end", "1000", "--samples", "3", "--method", method]);
+        let lies = run(&ball(0.5, 0.0), &["--t-end", "1000", "--rows", "3", "--method", method]);
         assert!(last(&lies, "ball").abs() < 1e-12, "{method}: {}", last(&lies, "ball"));
         assert!(times(&lies, "ball_lower").is_empty());
         assert!(lies["summary"]["steps"].as_u64().unwrap() < 200, "{method}");
@@ -111,7 +111,7 @@ fn a_stop_holds_as_long_as_it_is_pressed() {
     let text = "[gravity]\nacceleration = [0, 0, 0]\n[bodies.b]\nmass = 1.0\n\
                 joint = { kind = \"prismatic\", axis = [1, 0, 0], limits = [0, 10], restitution = 0.5 }\n\
                 [forces]\n\"b'\" = \"-cos(t)\"\n";
-    let lifts = run(text, &["--t-end", "3", "--samples", "31"]);
+    let lifts = run(text, &["--t-end", "3", "--rows", "31"]);
     for (t, x) in column(&lifts, "t").into_iter().zip(column(&lifts, "b")) {
         assert_near(x, if t < FRAC_PI_2 { 0.0 } else { t - FRAC_PI_2 + t.cos() }, 1e-8);
     }
@@ -138,7 +138,7 @@ fn a_pendulum_bounces_off_a_wall() {
         "[coordinates]\np = 2.0\n[gravity]\nacceleration = [0, 0, -9]\n[bodies.p]\nmass = 2.0\ncenter = [0, 0, -1]\n\
          joint = {{ kind = \"revolute\", axis = [0, 1, 0], limits = [0, 3], restitution = {e:?} }}\n"
     );
-    let swings = run(&text, &["--t-end", "12", "--samples", "3"]);
+    let swings = run(&text, &["--t-end", "12", "--rows", "3"]);
     let (mut k, mut expected) = (f64::sin(1.0), elliptic(f64::sin(1.0)) / 3.0);
     let found = times(&swings, "p_lower");
     assert!(found.len() > 8);
@@ -159,7 +159,7 @@ fn an_impact_moves_all_joints() {
                 [bodies.cart]\nmass = 3.0\njoint = { kind = \"prismatic\", axis = [1, 0, 0], limits = [-5, 1], restitution = 0 }\n\
                 [bodies.arm]\nparent = \"cart\"\nmass = 2.0\ncenter = [0, 0, -0.7]\njoint = { kind = \"revolute\", axis = [0, -1, 0] }\n\
                 [outputs]\np = \"2*0.7*cos(arm)*cart' + 2*0.49*arm'\"\n";
-    let strikes = run(text, &["--t-end", "1.5", "--samples", "31"]);
+    let strikes = run(text, &["--t-end", "1.5", "--rows", "31"]);
     let hits = times(&strikes, "cart_upper");
     assert_eq!(hits.len(), 1);
     assert_near(hits[0], 1.0, 1e-9);
@@ -184,7 +184,7 @@ fn two_bodies_keep_their_momentum() {
     let text = "[quasi_velocities]\n\"b'\" = 1.0\n[bodies.a]\nmass = 3.0\njoint = { kind = \"prismatic\", axis = [1, 0, 0] }\n\
                 [bodies.b]\nparent = \"a\"\nmass = 1.0\n\
                 joint = { kind = \"prismatic\", axis = [1, 0, 0], limits = [-1, 0.5], restitution = 0.5 }\n";
-    let parts = run(text, &["--t-end", "1", "--samples", "3"]);
+    let parts = run(text, &["--t-end", "1", "--rows", "3"]);
     assert_near(times(&parts, "b_upper")[0], 0.5, 1e-12);
     assert_near(last(&parts, "b'"), -0.5, 1e-14);
     // 1 = 3 v + (v − 1/2)
@@ -201,7 +201,7 @@ fn what_rests_on_a_stop_is_not_driven_through_it() {
                 joint = { kind = \"prismatic\", axis = [1, 0, 0], limits = [0, 10], restitution = 0.3 }\n\
                 [bodies.b]\nparent = \"a\"\nmass = 1.0\n\
                 joint = { kind = \"prismatic\", axis = [1, 0, 0], limits = [0, 10], restitution = 0.5 }\n";
-    let falls = run(text, &["--t-end", "1.5", "--samples", "7"]);
+    let falls = run(text, &["--t-end", "1.5", "--rows", "7"]);
     assert_near(times(&falls, "b_lower")[0], 1.0, 1e-9);
     assert_near(last(&falls, "b"), 0.25, 1e-8);
     column(&falls, "a").into_iter().for_each(|a| assert_near(a, 0.0, 1e-12));
@@ -214,7 +214,7 @@ fn the_stop_of_a_follower_stops_the_leader() {
     let text = "[quasi_velocities]\n\"block'\" = 1.0\n[bodies.block]\nmass = 2.0\njoint = { kind = \"prismatic\", axis = [1, 0, 0] }\n\
                 [bodies.wheel]\njoint = { kind = \"revolute\", axis = [0, 1, 0], follows = \"block\", ratio = 4.0, armature = 0.25, \
                 limits = [-8, 8], restitution = 0.5 }\n";
-    let turns = run(text, &["--t-end", "4", "--samples", "5"]);
+    let turns = run(text, &["--t-end", "4", "--rows", "5"]);
     assert_near(times(&turns, "wheel_upper")[0], 2.0, 1e-9);
     assert_near(last(&turns, "block'"), -0.5, 1e-12);
     assert_near(last(&turns, "wheel"), 4.0, 1e-8);
@@ -238,7 +238,7 @@ fn loops_stay_closed_in_an_impact() {
         bar("coupler", "parent = \"crank\"\n", ", at = [1, 0, 0]", 2.0),
         bar("rocker", "", ", at = [2, 0, 0]", 1.0),
     );
-    let turns = run(&text, &["--t-end", "1", "--samples", "101"]);
+    let turns = run(&text, &["--t-end", "1", "--rows", "101"]);
     // The coupler is moved without turning: all is as for one joint, whose speed is constant.
     let hits = times(&turns, "crank_lower");
     assert_near(hits[0], FRAC_PI_2 - 1.0, 1e-7);
@@ -268,7 +268,7 @@ fn hand(starts: &str) -> String {
 /// Each joint at its stop: all of them rest there, in few steps.
 #[test]
 fn a_hand_rests_on_its_stops() {
-    let end = run(&hand(""), &["--t-end", "100", "--samples", "11"]);
+    let end = run(&hand(""), &["--t-end", "100", "--rows", "11"]);
     for i in 0..8 {
         assert_near(last(&end, &format!("f{i}")), 0.0, 1e-12);
     }
@@ -278,7 +278,7 @@ fn a_hand_rests_on_its_stops() {
 /// Fingers that fall open strike their stops one after the other and in turn, ever faster, until they rest.
 #[test]
 fn a_hand_falls_open_and_rests() {
-    let end = run(&hand("f0 = -0.5\nf2 = -0.3\nf5 = -0.4\n"), &["--t-end", "10", "--samples", "11"]);
+    let end = run(&hand("f0 = -0.5\nf2 = -0.3\nf5 = -0.4\n"), &["--t-end", "10", "--rows", "11"]);
     for i in 0..8 {
         // They lie within 1e-9 of the way.
         assert_near(last(&end, &format!("f{i}")), 0.0, 2e-9);
@@ -297,7 +297,7 @@ fn stick_and_slip_by_turns() {
                 joint = { kind = \"prismatic\", axis = [1, 0, 0], friction = 0.5, stiction = 1.0 }\n\
                 [lagrangian]\npotential = \"(b - V*t)^2/2\"\n";
     for (method, tolerance) in [("auto", 1e-8), ("adams", 1e-8), ("bdf", 1e-7)] {
-        let moves = run(text, &["--t-end", "40", "--samples", "3", "--method", method, "--rtol", "1e-11"]);
+        let moves = run(text, &["--t-end", "40", "--rows", "3", "--method", method, "--rtol", "1e-11"]);
         let sticks = slides(&moves, "b'");
         assert!(sticks.len() > 4, "{sticks:?}");
         let (q, mut from) = (0.5 / 0.5, 0.0);
@@ -322,7 +322,7 @@ fn stiction_holds_more_than_friction() {
              joint = {{ kind = \"prismatic\", axis = [1, 0, 0], friction = 1.0, stiction = 2.0 }}\n[forces]\n\"b'\" = {push:?}\n"
         )
     };
-    let options = ["--t-end", "2", "--samples", "3"];
+    let options = ["--t-end", "2", "--rows", "3"];
     assert_near(last(&run(&text(1.5, 0.0), &options), "b"), 0.0, 1e-12);
     assert_near(last(&run(&text(2.5, 0.0), &options), "b"), 3.0, 1e-8);
     assert_near(last(&run(&text(1.5, 1.0), &options), "b"), 2.0 + 1.0, 1e-8);
@@ -419,7 +419,7 @@ fn legs_rest_on_the_ground_and_at_the_stop_of_their_hinge() {
         leg("a", "joint = { kind = \"planar\", axis = [0, 1, 0] }", 1.0, 1.0 / 12.0),
         leg("b", hinge, 1.5, 0.125)
     );
-    let run = run(&text, &["--t-end", "1", "--samples", "201"]);
+    let run = run(&text, &["--t-end", "1", "--rows", "201"]);
     assert_eq!(times(&run, "b_lower").len(), 1);
     // The stop is reached to within 1e-9 of the way.
     assert!(column(&run, "b").into_iter().all(|b| b >= -1.0 - 1e-8), "{:?}", column(&run, "b"));

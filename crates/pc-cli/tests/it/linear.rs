@@ -128,7 +128,7 @@ fn the_equilibria_of_a_bead() {
 
 #[test]
 fn the_equilibria_of_a_bead_for_programs() {
-    let text = said(BEAD, "equilibria", &["--format", "json", "--box", "θ=0.1..2", "--starts", "50"]);
+    let text = said(BEAD, "equilibria", &["--format", "json", "--box", "θ=0.1:2", "--starts", "50"]);
     let found: Value = serde_json::from_str(&text).expect("JSON");
     let list = found["equilibria"].as_array().expect("a list");
     assert_eq!(list.len(), 1);
@@ -268,7 +268,7 @@ fn what_is_not_defined_is_refused_with_a_cure() {
         refused(DRIVEN, "linearize", &[], 4),
         refused(DRIVEN, "equilibria", &[], 4),
         refused(BEAD, "linearize", &["--set", "g=0", "--set", "θ=0.4", "--hold", "θ"], 5),
-        refused(BEAD, "equilibria", &["--box", "θ=1.5..2"], 5),
+        refused(BEAD, "equilibria", &["--box", "θ=1.5:2"], 5),
         refused(BEAD, "linearize", &["--hold", "phi"], 2),
         refused(BEAD, "linearize", &["--set", "h=1"], 2),
         refused(BEAD, "linearize", &["--set", "θ=1", "--set", "θ=2"], 2),
@@ -276,8 +276,8 @@ fn what_is_not_defined_is_refused_with_a_cure() {
         refused(BEAD, "linearize", &["--vary", "h=1:2:3"], 2),
         refused(BEAD, "linearize", &["--set", "g=2", "--vary", "g=1:2:3"], 2),
         refused(BEAD, "linearize", &["-o", "a.xlsx"], 2),
-        refused(BEAD, "equilibria", &["--box", "θ'=0..1"], 2),
-        refused(CART_POLE, "equilibria", &["--box", "x=0..1"], 2),
+        refused(BEAD, "equilibria", &["--box", "θ'=0:1"], 2),
+        refused(CART_POLE, "equilibria", &["--box", "x=0:1"], 2),
         refused(&CART_POLE.replace("\"push\"", "\"push + 1\""), "equilibria", &[], 5),
     ];
     insta::assert_snapshot!(driven.concat());

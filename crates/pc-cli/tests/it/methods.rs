@@ -47,7 +47,7 @@ fn the_summary_says_what_ran_and_why() {
 #[test]
 fn all_methods_come_to_the_same_end() {
     let end = |method: &str| {
-        let output = pc(&["run", "heavy-top-lagrange", "--t-end", "5", "--samples", "2", "--method", method]);
+        let output = pc(&["run", "heavy-top-lagrange", "--t-end", "5", "--rows", "2", "--method", method]);
         said(&output, 0);
         table(&output).pop().expect("a row")
     };

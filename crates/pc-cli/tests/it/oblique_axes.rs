@@ -38,7 +38,7 @@ inertia = [0.7, 1.3, 1.6]
 fn run(text: &str) -> (Vec<String>, Vec<Vec<f64>>) {
     let directory = tempfile::tempdir().unwrap();
     fs::write(directory.path().join("model.toml"), text).unwrap();
-    let arguments = ["run", "model.toml", "--t-end", "2", "--samples", "9", "--rtol", "1e-12"];
+    let arguments = ["run", "model.toml", "--t-end", "2", "--rows", "9", "--rtol", "1e-12"];
     let output = Command::new(env!("CARGO_BIN_EXE_pc"))
         .args(arguments)
         .current_dir(directory.path())

@@ -295,14 +295,14 @@ fn sweeps_are_drawn_by_the_varied_quantities() {
     let svg = sweep(&["--vary", "k=1:2:4", "--vary", "x=1,2,5", "--columns", "x,y"]);
     assert!(texts(&svg).contains(&"x at the end".to_owned()) && texts(&svg).contains(&"x(start)".to_owned()));
     assert_eq!(svg.matches("<rect").count(), 1 + 2 * (4 * 3 + 64));
-    let svg = sweep(&["--samples", "200", "--random", "k=normal(30,1)", "--columns", "x"]);
+    let svg = sweep(&["--members", "200", "--random", "k=normal(30,1)", "--columns", "x"]);
     assert!(
         texts(&svg).iter().any(|text| text.contains("median: ") && text.contains("95 %: ")),
         "{:?}",
         texts(&svg)
     );
     assert_eq!(lines(&svg, EVENT).len(), 5, "quantiles");
-    let svg = sweep(&["--samples", "50", "--random", "k=normal(30,1)", "--columns", "x", "--rows", "20"]);
+    let svg = sweep(&["--members", "50", "--random", "k=normal(30,1)", "--columns", "x", "--rows", "20"]);
     assert!(texts(&svg).contains(&"median".to_owned()));
     let svg = sweep(&["--vary", "k=1:9:3", "--columns", "x", "--rows", "20"]);
     assert!(texts(&svg).contains(&"k = 5".to_owned()), "{:?}", texts(&svg));

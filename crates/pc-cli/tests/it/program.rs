@@ -76,7 +76,7 @@ fn refuses(arguments: &[&str], exit_code: i32, mention: &str) {
 #[test]
 fn a_run_is_compared_with_a_second_derivation_at_both_ends() {
     let said = |arguments: &[&str]| {
-        let output = run(&[&["run", "chaplygin-sleigh", "--samples", "2"], arguments].concat());
+        let output = run(&[&["run", "chaplygin-sleigh", "--rows", "2"], arguments].concat());
         assert_eq!(code(&output), 0);
         stderr(&output)
     };
@@ -91,7 +91,7 @@ fn a_run_is_compared_with_a_second_derivation_at_both_ends() {
 
 #[test]
 fn the_table_has_its_header_and_all_digits() {
-    let output = run(&["run", "heavy-top-lagrange", "--samples", "5", "--t-end", "2"]);
+    let output = run(&["run", "heavy-top-lagrange", "--rows", "5", "--t-end", "2"]);
     assert_eq!(code(&output), 0);
     let text = stdout(&output);
     let lines: Vec<&str> = text.lines().collect();
@@ -149,7 +149,7 @@ fn json_and_npz_hold_the_table_of_the_csv() {
     let directory = tempfile::tempdir().expect("a directory");
     let at = |name: &str| directory.path().join(name).to_str().expect("UTF-8").to_owned();
     for name in ["a.csv", "a.json", "a.npz"] {
-        let output = run(&["run", "heavy-top-lagrange", "--samples", "4", "-o", &at(name)]);
+        let output = run(&["run", "heavy-top-lagrange", "--rows", "4", "-o", &at(name)]);
         assert!(code(&output) == 0 && output.stdout.is_empty());
     }
     let csv = std::fs::read_to_string(at("a.csv")).expect("a file");
@@ -185,7 +185,7 @@ fn json_and_npz_hold_the_table_of_the_csv() {
 #[test]
 fn the_canonical_form_gives_the_same_table() {
     let end = |model: &str, form: &str| {
-        let output = run(&["run", model, "--form", form, "--rtol", "1e-12", "--samples", "2"]);
+        let output = run(&["run", model, "--form", form, "--rtol", "1e-12", "--rows", "2"]);
         assert_eq!(code(&output), 0, "{}", stderr(&output));
         let table = stdout(&output);
         let row = table.lines().last().expect("a row").to_owned();
@@ -242,7 +242,7 @@ fn wrong_usage_is_exit_2_and_suggests_a_correction() {
         2,
         "`I1` is given two values; leave one out",
     );
-    refuses(&["run", "euler-top", "--samples", "1"], 2, "from 2");
+    refuses(&["run", "euler-top", "--rows", "1"], 2, "from 2");
     refuses(&["run", "euler-top", "--rtol", "-1e-9"], 2, "positive");
     refuses(&["run", "euler-top", "--atol", "NaN"], 2, "finite");
     refuses(&["run", "euler-top", "--t-end", "0"], 2, "nothing to integrate");
@@ -353,7 +353,7 @@ fn a_new_file_has_the_usual_permissions_and_links_are_followed() {
 #[test]
 fn a_closed_pipe_is_reported_by_the_exit_code_alone() {
     let mut child = pc()
-        .args(["run", "euler-top", "--samples", "50000"])
+        .args(["run", "euler-top", "--rows", "50000"])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()

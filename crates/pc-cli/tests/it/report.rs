@@ -107,7 +107,7 @@ fn numbers(text: &str) -> Vec<f32> {
 #[test]
 fn frames_are_the_numbers_of_the_run() {
     let model = "double-pendulum-cartesian";
-    let page = text(pc(&["animate", model, "--samples", "101"]));
+    let page = text(pc(&["animate", model, "--rows", "101"]));
     let xml = parsed(&page);
     let data = xml.descendants().find(|node| node.attribute("id") == Some("player-data")).expect("data");
     let data: Value = serde_json::from_str(data.text().expect("text")).expect("JSON");
@@ -120,7 +120,7 @@ fn frames_are_the_numbers_of_the_run() {
     let frames = numbers(data["frames"].as_str().expect("text"));
     let times = numbers(data["times"].as_str().expect("text"));
     assert_eq!((frames.len(), times.len()), (101 * width, 101));
-    let table = text(pc(&["run", model, "--samples", "101"]));
+    let table = text(pc(&["run", model, "--rows", "101"]));
     let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
     let column = |name: &str| rows[0].iter().position(|known| *known == name).expect("a column");
     for row in [0, 50, 100] {
@@ -162,7 +162,7 @@ fn dots(svg: &str) -> Vec<[f64; 2]> {
 fn a_frame_is_the_motion_on_paper() {
     let directory = tempfile::tempdir().expect("a directory");
     let model = "double-pendulum-cartesian";
-    let table = text(pc(&["run", model, "--samples", "101"]));
+    let table = text(pc(&["run", model, "--rows", "101"]));
     let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
     let column = |name: &str| rows[0].iter().position(|known| *known == name).expect("a column");
     let mut factors: Vec<f64> = Vec::new();
@@ -172,7 +172,7 @@ fn a_frame_is_the_motion_on_paper() {
         let file = directory.path().join(format!("{row}.svg"));
         let path = file.to_str().expect("UTF-8");
         let at = value("t").to_string();
-        assert!(text(pc(&["animate", model, "--samples", "101", "--at", &at, "-o", path])).is_empty());
+        assert!(text(pc(&["animate", model, "--rows", "101", "--time", &at, "-o", path])).is_empty());
         let [first, second] = dots(&std::fs::read_to_string(&file).expect("written"))[..] else {
             panic!("two points are drawn");
         };
@@ -206,9 +206,9 @@ fn films_and_frames_are_written() {
         assert!(text(pc(&[&animate[..], &["-o", &place(name)]].concat())).is_empty());
         assert!(std::fs::read(place(name)).expect("written").starts_with(start), "{name}");
     }
-    let wrong = pc(&[&animate[..], &["--at", "0.1", "-o", &film]].concat());
+    let wrong = pc(&[&animate[..], &["--time", "0.1", "-o", &film]].concat());
     assert_eq!(wrong.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&wrong.stderr).contains("--at chooses a frame"));
+    assert!(String::from_utf8_lossy(&wrong.stderr).contains("--time chooses a frame"));
 }
 
 /// Reactions are not drawn, so there is no remark on them.

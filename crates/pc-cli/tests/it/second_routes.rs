@@ -64,7 +64,7 @@ fn the_derivative_by_an_input_of_a_table_agrees() {
 /// At coarse tolerances the two forms are apart by errors of integration, which smaller ones tell from a difference.
 #[test]
 fn errors_of_integration_are_no_difference() {
-    let coarse = ["--t-end", "10", "--rtol", "1e-5", "--atol", "1e-8", "--samples", "21"];
+    let coarse = ["--t-end", "10", "--rtol", "1e-5", "--atol", "1e-8", "--rows", "21"];
     let forms =
         pc("", &[&["compare", "pendulum-chain", "--form", "poincare,canonical"], &coarse[..]].concat());
     let said = text(&forms.stdout);

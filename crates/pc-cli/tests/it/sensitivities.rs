@@ -68,7 +68,7 @@ impl Ball {
 /// Several impacts, each of which amplifies the errors of the columns by up to 1/e.
 #[test]
 fn a_bouncing_ball() {
-    let sharp = ["--rtol", "1e-12", "--atol", "1e-14", "--samples", "31", "--set", "g=9.5", "--no-verify"];
+    let sharp = ["--rtol", "1e-12", "--atol", "1e-14", "--rows", "31", "--set", "g=9.5", "--no-verify"];
     for form in ["poincare", "canonical"] {
         let asked = ["run", "bouncing-ball", "--sensitivities", "g,e,h,m", "--form", form];
         let (names, rows) = table(&pc(&[&asked[..], &sharp[..]].concat()));
@@ -112,7 +112,7 @@ fn derivatives_are_kept_in_checkpoints() {
     let place = |name: &str| directory.path().join(name).display().to_string();
     for method in ["adams", "dop853", "taylor"] {
         let kept = place(method);
-        let all = ["run", "bouncing-ball", "--sensitivities", "g,e", "--samples", "9", "--method", method];
+        let all = ["run", "bouncing-ball", "--sensitivities", "g,e", "--rows", "9", "--method", method];
         let run = |more: &[&str]| pc(&[&all[..], more].concat());
         let (names, plain) = table(&run(&[]));
         let whole = run(&["--checkpoint", &kept, "--every", "20"]);
@@ -123,7 +123,7 @@ fn derivatives_are_kept_in_checkpoints() {
             assert!((row - plain).abs() <= 1e-6 * plain.abs().max(1.0), "{method}: {row}, not {plain}");
         }
         assert_eq!(run(&["--resume", &kept]).stdout, whole.stdout, "{method}");
-        let other = pc(&[&all[..2], &["--samples", "9", "--method", method, "--resume", &kept]].concat());
+        let other = pc(&[&all[..2], &["--rows", "9", "--method", method, "--resume", &kept]].concat());
         let said = String::from_utf8(other.stderr).expect("UTF-8");
         assert!(other.status.code() == Some(2) && said.contains("--sensitivities g,e"), "{method}: {said}");
     }

@@ -26,7 +26,7 @@ kinetic = "m/2*(x'^2 + y'^2) + m*a*ω*(cos(φ)*y' - sin(φ)*x') + (J + m*a^2)/2*
 t_end = 3.0
 "#;
 
-const RANDOM: [&str; 6] = ["--samples", "500", "--random", "ω=normal(1,0.3)", "--random", "a=uniform(0.1,1)"];
+const RANDOM: [&str; 6] = ["--members", "500", "--random", "ω=normal(1,0.3)", "--random", "a=uniform(0.1,1)"];
 /// Members with m = 0 are refused: the mass matrix is singular.
 const GRID: [&str; 4] = ["--vary", "m=0,1,2", "--vary", "a=0.1:1:7"];
 

@@ -84,7 +84,7 @@ fn a_motor_is_integrated_with_its_pendulum() {
     for form in ["poincare", "canonical"] {
         for method in ["bdf", "adams"] {
             let run =
-                ok(&["run", &model, "--samples", "2", "--form", form, "--method", method, "--rtol", "1e-11"]);
+                ok(&["run", &model, "--rows", "2", "--form", form, "--method", method, "--rtol", "1e-11"]);
             let (header, rows) = table(&run);
             assert_eq!(header, ["t", "th", "w", "i", "e", "energy", "heat"]);
             // A few thousand steps with errors of 1e-11, for values up to 10.
@@ -116,7 +116,7 @@ fn states_are_printed_and_swept() {
     let column =
         |line: &str, j: usize| line.split(',').nth(j).expect("a cell").parse::<f64>().expect("a number");
     let lines: Vec<&str> = text.lines().skip(1).collect();
-    let heavier = ok(&["run", &model, "--samples", "2", "--set", "m=0.4"]);
+    let heavier = ok(&["run", &model, "--rows", "2", "--set", "m=0.4"]);
     let (_, rows) = table(&heavier);
     assert_close(&[column(lines[1], 5), column(lines[1], 7)], &[rows[1][1], rows[1][3]], 1e-12);
 }
@@ -126,7 +126,7 @@ fn states_are_printed_and_swept() {
 fn parameters_made_of_others_are_set() {
     let (_directory, model) = written(MOTOR);
     let end = |settings: &[&str]| {
-        let run = ok(&[&["run", &model, "--samples", "2"], settings].concat());
+        let run = ok(&[&["run", &model, "--rows", "2"], settings].concat());
         table(&run).1[1][1..].to_vec()
     };
     let set = end(&["--set", "m=0.4"]);
@@ -148,14 +148,14 @@ fn tables_drive_a_motion() {
     let (directory, model) =
         written(&driven("{ file = \"u.csv\", column = \"u\", interpolation = \"linear\" }"));
     fs::write(Path::new(&directory.path()).join("u.csv"), "t,u\n0,0\n1,6\n2,12\n").expect("a file");
-    let (_, rows) = table(&ok(&["run", &model, "--samples", "3", "--rtol", "1e-12"]));
+    let (_, rows) = table(&ok(&["run", &model, "--rows", "3", "--rtol", "1e-12"]));
     assert_close(&rows[2][1..3], &[8.0, 12.0], 1e-10);
     assert_eq!(rows.iter().map(|row| row[4]).collect::<Vec<_>>(), [0.0, 6.0, 12.0]);
 
     let held = "{ times = [0, 1], values = [0, 2], interpolation = \"hold\" }";
     let (_directory, model) = written(&driven(held));
     for form in ["poincare", "canonical"] {
-        let (_, rows) = table(&ok(&["run", &model, "--samples", "5", "--form", form]));
+        let (_, rows) = table(&ok(&["run", &model, "--rows", "5", "--form", form]));
         let [at_half, at_one, at_end] = [1, 2, 4].map(|i| rows[i].clone());
         // Before the jump nothing moves, to the last bit.
         assert_eq!([&at_half[1..3], &at_one[1..3]], [[0.0; 2], [0.0; 2]]);
@@ -168,7 +168,7 @@ fn tables_drive_a_motion() {
     let values: Vec<f64> = times.iter().map(|t| t.sin()).collect();
     let cubic = format!("{{ times = {times:?}, values = {values:?}, interpolation = \"cubic\" }}");
     let (_directory, model) = written(&driven(&cubic));
-    let (_, rows) = table(&ok(&["run", &model, "--samples", "2", "--rtol", "1e-12"]));
+    let (_, rows) = table(&ok(&["run", &model, "--rows", "2", "--rtol", "1e-12"]));
     assert_close(&rows[1][1..3], &[2.0 - 2f64.sin(), 1.0 - 2f64.cos()], 1e-9);
 }
 
@@ -176,7 +176,7 @@ fn tables_drive_a_motion() {
 #[test]
 fn a_motion_ends_with_its_table() {
     let (_directory, model) = written(&driven("{ times = [0, 1], values = [0, 6] }"));
-    let output = pc(&["run", &model, "--samples", "3"]);
+    let output = pc(&["run", &model, "--rows", "3"]);
     let text = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(5), "{text}");
     assert!(
@@ -190,7 +190,7 @@ fn a_motion_ends_with_its_table() {
 #[test]
 fn constant_inputs_are_set_and_varied_and_tables_are_not() {
     let (_directory, model) = written(&driven("3"));
-    let (_, rows) = table(&ok(&["run", &model, "--samples", "2", "--set", "u=1"]));
+    let (_, rows) = table(&ok(&["run", &model, "--rows", "2", "--set", "u=1"]));
     assert_close(&rows[1][1..3], &[2.0, 2.0], 1e-9);
     let (directory, model) = written(&driven("{ times = [0, 2], values = [0, 6] }"));
     let output = pc(&["run", &model, "--set", "u=1"]);
@@ -249,7 +249,7 @@ t_end = 2
                 with a velocity u add the force d(m)*u";
     let speed = |force: &str| {
         let (_directory, model) = falling(force);
-        let output = pc(&["run", &model, "--samples", "2"]);
+        let output = pc(&["run", &model, "--rows", "2"]);
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
         assert!(String::from_utf8_lossy(&output.stderr).contains(&format!("note: {note}\n")));
         table(&String::from_utf8(output.stdout).expect("text")).1[1][2]

@@ -192,8 +192,7 @@ fn starts_are_varied_and_all_rows_can_be_written() {
         MASSES.replace("[lagrangian]", "[quasi_velocities]\n\"x'\" = 0.5\n[lagrangian]"),
     )
     .expect("written");
-    let run =
-        lines(&output(&["run", &place.name("model.toml"), "--samples", "5", "--method", "adams"]).stdout);
+    let run = lines(&output(&["run", &place.name("model.toml"), "--rows", "5", "--method", "adams"]).stdout);
     for (row, run) in table[6..].iter().zip(&run[1..]) {
         assert_eq!(&row[3..3 + run.len()], run);
     }
@@ -209,7 +208,7 @@ fn starts_are_varied_and_all_rows_can_be_written() {
 #[test]
 fn the_bytes_do_not_depend_on_the_number_of_threads() {
     let place = Place::new(SLEIGH);
-    let options = ["--samples", "60", "--random", "ω=normal(1,0.3)", "--random", "a=uniform(0.1,1)"];
+    let options = ["--members", "60", "--random", "ω=normal(1,0.3)", "--random", "a=uniform(0.1,1)"];
     let mut extensions = vec!["csv", "json", "npz"];
     if cfg!(feature = "parquet") {
         extensions.push("parquet");
@@ -261,7 +260,7 @@ fn random_members_depend_on_the_seed_and_their_number_alone() {
             ["--random", "m=lognormal(0,0.5)", "--random", "x=normal(2,0.1)", "--random", "y=uniform(-1,3)"];
         lines(&place.swept(
             "a.csv",
-            &[&random[..], &["--samples", samples, "--seed", seed, "--t-end", "0.1"]].concat(),
+            &[&random[..], &["--members", samples, "--seed", seed, "--t-end", "0.1"]].concat(),
         ))
     };
     let (few, many, other) = (table("10", "3"), table("2000", "3"), table("10", "4"));
@@ -344,9 +343,9 @@ fn wrong_usage_suggests_a_correction() {
     let place = Place::new(MASSES);
     for (options, mention) in [
         (&[][..], "--vary"),
-        (&["--vary", "m=1:2:3", "--samples", "3"], "cannot be used with"),
-        (&["--random", "m=normal(0,1)"], "--samples"),
-        (&["--vary", "m=1:2:3", "--samples", "3", "--random", "k=normal(0,1)"], "cannot be used with"),
+        (&["--vary", "m=1:2:3", "--members", "3"], "cannot be used with"),
+        (&["--random", "m=normal(0,1)"], "--members"),
+        (&["--vary", "m=1:2:3", "--members", "3", "--random", "k=normal(0,1)"], "cannot be used with"),
         (&["--vary", "q=1:2:3"], "its parameters are m, k, its start values x, y, x', y'"),
         (&["--vary", "m=1:2:3", "--vary", "m=1:2:3"], "`m` is given values twice"),
         (&["--vary", "m=1:2:3", "--set", "m=1"], "`m` is given values twice"),
@@ -359,8 +358,8 @@ fn wrong_usage_suggests_a_correction() {
             &["--vary", "m=1:2:3", "--set", "k=1", "--set", "k=2"],
             "pc: --set: `k` is given two values; leave one out",
         ),
-        (&["--samples", "3", "--random", "m=cauchy(0,1)"], "lognormal(m,s)"),
-        (&["--samples", "0", "--random", "m=normal(0,1)"], "0 is not in"),
+        (&["--members", "3", "--random", "m=cauchy(0,1)"], "lognormal(m,s)"),
+        (&["--members", "0", "--random", "m=normal(0,1)"], "0 is not in"),
         (&["--vary", "m=1:2:3", "--threads", "0"], "--threads"),
         (&["--vary", "m=1:2:10000000000", "--vary", "k=1:2:10000000000"], "more than 2^64 members"),
         (
@@ -368,7 +367,7 @@ fn wrong_usage_suggests_a_correction() {
             "pc: the sweep has 1000000000000 members, more than the limit of 1000000; ask for fewer values, or give \
              --limit-members 1000000000000 if so many are meant\n",
         ),
-        (&["--samples", "1000001", "--random", "m=normal(1,0.1)"], "give --limit-members 1000001 if"),
+        (&["--members", "1000001", "--random", "m=normal(1,0.1)"], "give --limit-members 1000001 if"),
         (
             &["--vary", "m=1:2:8", "--shard", "1/4", "--limit-members", "7"],
             "has 8 members, more than the limit of 7",
@@ -399,7 +398,7 @@ fn a_limit_on_members_that_is_not_passed_changes_nothing() {
 }
 
 /// So many members that the sweep lasts long enough to be cut short.
-const MANY: [&str; 6] = ["--samples", "600", "--random", "ω=normal(1,0.3)", "--random", "a=uniform(0.1,1)"];
+const MANY: [&str; 6] = ["--members", "600", "--random", "ω=normal(1,0.3)", "--random", "a=uniform(0.1,1)"];
 
 #[test]
 fn a_sweep_cut_short_again_and_again_gives_the_same_bytes() {
@@ -478,7 +477,7 @@ fn the_journal_of_another_sweep_is_refused_with_the_difference() {
 
 /// Members for longer than the journal of one thread stays unwritten on a fast machine.
 #[cfg(unix)]
-const MORE: [&str; 6] = ["--samples", "60000", "--random", "ω=normal(1,0.3)", "--random", "a=uniform(0.1,1)"];
+const MORE: [&str; 6] = ["--members", "60000", "--random", "ω=normal(1,0.3)", "--random", "a=uniform(0.1,1)"];
 
 /// What comes of a sweep that is interrupted once its journal is long enough, unless it ends before.
 #[cfg(unix)]

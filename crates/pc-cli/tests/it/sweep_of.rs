@@ -92,7 +92,7 @@ fn the_bytes_depend_neither_on_threads_nor_on_shards() {
     // Some members of each have no result.
     let linearize = ["--of", "linearize", "--vary", "Ω=0:2:5", "--vary", "pull=0:1.5:4"];
     let check = ["--of", "check", "--vary", "Ω=0:2:3", "--vary", "g=0,1"];
-    let random = ["--of", "linearize", "--samples", "9", "--random", "pull=uniform(-1,1)", "--seed", "3"];
+    let random = ["--of", "linearize", "--members", "9", "--random", "pull=uniform(-1,1)", "--seed", "3"];
     let mut sweeps: Vec<(&[&str], String)> =
         extensions.into_iter().map(|extension| (&linearize[..], format!("a.{extension}"))).collect();
     sweeps.extend([(&check[..], "b.csv".to_owned()), (&random[..], "c.csv".to_owned())]);

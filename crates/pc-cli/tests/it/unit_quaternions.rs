@@ -82,13 +82,13 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 fn quaternions_keep_their_length_by_all_methods_and_forms() {
     let case = Case::new(TOPS);
     for method in METHODS {
-        let loose = ["--t-end", "8", "--samples", "33", "--method", method, "--rtol", "1e-5"];
+        let loose = ["--t-end", "8", "--rows", "33", "--method", method, "--rtol", "1e-5"];
         let (names, rows) = case.run(&loose);
         for joint in ["top", "rod"] {
             assert!(off(&names, &rows, joint) <= ROUNDING, "{method}: {}", off(&names, &rows, joint));
         }
     }
-    let (names, rows) = case.run(&["--t-end", "4", "--samples", "9", "--form", "canonical"]);
+    let (names, rows) = case.run(&["--t-end", "4", "--rows", "9", "--form", "canonical"]);
     assert!(off(&names, &rows, "top") <= ROUNDING && off(&names, &rows, "rod") <= ROUNDING);
 }
 
@@ -99,7 +99,7 @@ fn a_body_turns_about_its_principal_axis() {
         "[quasi_velocities]\n\"b_ω3\" = 1.25\n[bodies.b]\njoint = { kind = \"spherical\" }\ninertia = [2, 1, 4]\n",
     );
     for method in METHODS {
-        let (names, rows) = case.run(&["--t-end", "6", "--samples", "4", "--method", method]);
+        let (names, rows) = case.run(&["--t-end", "6", "--rows", "4", "--method", method]);
         for row in &rows {
             let (sine, cosine) = (0.625 * row[0]).sin_cos();
             let q = ["b_q0", "b_q1", "b_q2", "b_q3"].map(|name| row[place(&names, name)]);
@@ -118,7 +118,7 @@ fn a_free_body_falls_and_tumbles() {
         "[quasi_velocities]\n\"b_ω1\" = 0.02\n\"b_ω2\" = 3.0\n\"b_v3\" = 5.0\n[bodies.b]\njoint = { kind = \"free\" }\n\
          mass = 3.0\ninertia = [1, 2, 2.5]\n[gravity]\nacceleration = [0, 0, -9.81]\n",
     );
-    let (names, rows) = case.run(&["--t-end", "20", "--samples", "5"]);
+    let (names, rows) = case.run(&["--t-end", "20", "--rows", "5"]);
     assert!(off(&names, &rows, "b") <= ROUNDING);
     for row in &rows {
         let z = 5.0 * row[0] - 9.81 / 2.0 * row[0] * row[0];
@@ -134,7 +134,7 @@ fn a_rounded_quaternion_is_a_unit_quaternion() {
         "[coordinates]\ntop_q0 = 0.923879533\ntop_q1 = 0.382683432\n[quasi_velocities]",
     );
     let case = Case::new(&text);
-    let (names, rows) = case.run(&["--t-end", "1", "--samples", "2"]);
+    let (names, rows) = case.run(&["--t-end", "1", "--rows", "2"]);
     assert!(off(&names, &rows, "top") <= ROUNDING, "{:?}", rows[0]);
 }
 
@@ -151,7 +151,7 @@ fn members_of_a_sweep_keep_the_length_of_quaternions() {
     assert_eq!(rows.len(), 9);
     assert!(off(&names, &rows, "top") <= ROUNDING && off(&names, &rows, "rod") <= ROUNDING);
     let set = format!("m={}", rows[4][place(&names, "m")]);
-    let (of_run, single) = case.run(&["--set", &set, "--t-end", "4", "--samples", "2"]);
+    let (of_run, single) = case.run(&["--set", &set, "--t-end", "4", "--rows", "2"]);
     for (name, value) in
         of_run.iter().zip(single.last().expect("a row")).skip(1).filter(|(name, _)| *name != "energy")
     {

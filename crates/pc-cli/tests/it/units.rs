@@ -157,7 +157,7 @@ fn json_of(value: &Value, names: &[&str]) -> Vec<Value> {
 fn nothing_depends_on_units() {
     for (name, model, columns) in SCALED {
         let end = |units: [i32; 3]| {
-            let table = answer(&in_units(model, units), &["run", "-", "--samples", "2"]);
+            let table = answer(&in_units(model, units), &["run", "-", "--rows", "2"]);
             let cells =
                 |line: Option<&str>| line.expect("a line").split(',').map(str::to_owned).collect::<Vec<_>>();
             let (names, row) = (cells(table.lines().next()), cells(table.lines().last()));

@@ -3,8 +3,9 @@
 use pc_mech::{Expr, Graph, Matrix};
 
 use crate::assembly::assembly::Assembly;
+use crate::assembly::block::block;
 use crate::diagnostics::error::ModelError;
-use crate::document::{Draw, DrawnShape, Expression, Orientation};
+use crate::document::{Body, Draw, DrawnShape, Expression, Inertia, Orientation};
 use crate::model::model::Model;
 use crate::names::scope::Scope;
 use crate::names::stage::Stage;
@@ -81,32 +82,38 @@ pub enum Shape<'g> {
 }
 
 impl Model {
-    /// The drawing of the model: bodies on joints, with rods from joint to joint, other bodies, points, then the
-    /// shapes of `[[draw]]`.
+    /// The drawing of the model: bodies on joints, with rods from joint to joint and to points, other bodies, points, then the
+    /// shapes of `[[draw]]`. Bodies that turn, and to which no rod leads the eye, are boxes of their inertia, unless the text draws
+    /// them.
     ///
     /// # Errors
     /// [`ModelError`] at the expression that cannot be resolved.
     pub fn drawing<'g>(&self, assembly: &Assembly<'g>) -> Result<Vec<Shape<'g>>, ModelError> {
         let document = self.document();
-        let mut shapes = on_joints(assembly);
         let mut scope = Scope::new(assembly.system.graph(), document);
+        let mut points: Vec<(&str, Spot<'g>)> = Vec::new();
+        for point in &document.points {
+            let mut at = [Expr::ZERO; 3];
+            for (value, name) in at.iter_mut().zip(&point.components) {
+                *value = scope.point(&name.text)?;
+            }
+            points.push((&point.body.value, at));
+        }
+        let mut shapes = on_joints(assembly, &points, document.draw.is_empty());
         for body in &document.bodies {
             let label = Some(body.name.text.clone());
             let at = spot(&mut scope, &body.position, Stage::Position)?;
             shapes.push(Shape::Point { at, label });
             if let Some(Orientation::Rotation(entries)) = &body.orientation {
                 let rotation = rotation(&mut scope, entries, Stage::Position)?;
-                shapes.push(Shape::Axes { at, rotation });
+                let block = match document.draw.is_empty() {
+                    true => own_block(assembly, &mut scope, body, at, &rotation)?,
+                    false => None,
+                };
+                shapes.push(block.unwrap_or(Shape::Axes { at, rotation }));
             }
         }
-        for point in &document.points {
-            let names = &point.components[..3];
-            let mut at = [Expr::ZERO; 3];
-            for (value, name) in at.iter_mut().zip(names) {
-                *value = scope.point(&name.text)?;
-            }
-            shapes.push(Shape::Point { at, label: None });
-        }
+        shapes.extend(points.into_iter().map(|(_, at)| Shape::Point { at, label: None }));
         shapes.extend(self.drawn(assembly)?);
         Ok(shapes)
     }
@@ -177,9 +184,35 @@ fn rotation<'g>(
     Ok(Matrix::from_fn(3, 3, |i, j| values[3 * i + j]))
 }
 
-/// For each body, its mass centre and a rod from its joint to each joint that it carries, or to the mass
-/// centre if it carries none.
-fn on_joints<'g>(assembly: &Assembly<'g>) -> Vec<Shape<'g>> {
+/// The box of a body that is not on a joint.
+fn own_block<'g>(
+    assembly: &Assembly<'g>,
+    scope: &mut Scope<'g, '_>,
+    body: &Body,
+    at: Spot<'g>,
+    rotation: &Matrix<Expr<'g>>,
+) -> Result<Option<Shape<'g>>, ModelError> {
+    let mass = scope.resolve(&body.mass, Stage::Inertia)?;
+    let entries: &[Expression] = match &body.inertia {
+        None => return Ok(None),
+        Some(Inertia::Principal(moments)) => &moments[..],
+        Some(Inertia::Full(entries)) => &entries[..],
+    };
+    let entries: Vec<Expr<'g>> =
+        entries.iter().map(|entry| scope.resolve(entry, Stage::Inertia)).collect::<Result<_, _>>()?;
+    // Ixx, Iyy, Izz, Ixy, Iyz, Ixz
+    let inertia = Matrix::from_fn(3, 3, |i, j| match i + j {
+        _ if i == j => entries[i],
+        1 => entries.get(3).copied().unwrap_or(Expr::ZERO),
+        3 => entries.get(4).copied().unwrap_or(Expr::ZERO),
+        _ => entries.get(5).copied().unwrap_or(Expr::ZERO),
+    });
+    Ok(block(assembly, (mass, &inertia), at, rotation))
+}
+
+/// For each body, its mass centre and a rod from its joint to each joint and point that it carries, or to the mass centre if it
+/// carries none; where the mass centre is at the joint, a box if `boxes`.
+fn on_joints<'g>(assembly: &Assembly<'g>, points: &[(&str, Spot<'g>)], boxes: bool) -> Vec<Shape<'g>> {
     let Some(tree) = assembly.system.tree() else { return Vec::new() };
     let (motions, graph) = (tree.motions(), assembly.system.graph());
     let mut shapes = Vec::new();
@@ -188,14 +221,23 @@ fn on_joints<'g>(assembly: &Assembly<'g>) -> Vec<Shape<'g>> {
         else {
             continue; // bodies of a tree have places
         };
-        let (_, centre, _) = body.mass_properties();
+        let (mass, centre, inertia) = body.mass_properties();
         let centre: Spot<'g> =
             [0, 1, 2].map(|i| place[i] + graph.dot((0..3).map(|j| rotation[(i, j)]), centre));
         let children = tree.bodies().iter().filter(|child| child.parent() == Some(body.name()));
-        let ends: Vec<Spot<'g>> = children.filter_map(|child| motions.place(child.name())).collect();
+        let carried = points.iter().filter(|(of, _)| *of == body.name()).map(|&(_, at)| at);
+        let mut ends: Vec<Spot<'g>> = Vec::new();
+        for end in children.filter_map(|child| motions.place(child.name())).chain(carried) {
+            if !ends.contains(&end) {
+                ends.push(end);
+            }
+        }
         let ends = if ends.is_empty() { vec![centre] } else { ends };
-        let rods = ends.into_iter().filter(|end| *end != place);
-        shapes.extend(rods.map(|end| Shape::Line { through: vec![place, end] }));
+        let rods: Vec<Spot<'g>> = ends.into_iter().filter(|end| *end != place).collect();
+        if rods.is_empty() && boxes {
+            shapes.extend(block(assembly, (mass, &inertia), centre, rotation));
+        }
+        shapes.extend(rods.into_iter().map(|end| Shape::Line { through: vec![place, end] }));
         shapes.push(Shape::Point { at: centre, label: Some(body.name().to_owned()) });
     }
     shapes

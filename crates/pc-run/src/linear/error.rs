@@ -130,9 +130,9 @@ pub enum LinearError {
             n => format!("; {n} led to where the coordinates or the frame are singular and the rates have no derivatives"),
         },
         match (converged, poles) {
-            (0, 0) => "widen the box (--box NAME=FROM..TO), or take more starts (--starts N); where a force drives a coordinate on \
+            (0, 0) => "widen the box (--box NAME=FROM:TO), or take more starts (--starts N); where a force drives a coordinate on \
                        which nothing depends, there is none in any box",
-            (_, 0) => "widen the box (--box NAME=FROM..TO), or take more starts (--starts N)",
+            (_, 0) => "widen the box (--box NAME=FROM:TO), or take more starts (--starts N)",
             _ => "use coordinates and a frame that are regular there, such as more coordinates under a constraint",
         }
     )]

@@ -72,7 +72,7 @@ impl Checkpoints {
             return Err(CheckpointFileError::Occupied { path: path.to_owned() }.into());
         }
         let mut identity = identity::of_motion(model, plan);
-        identity.insert(1, ("--samples".to_owned(), plan.samples.to_string()));
+        identity.insert(1, ("--rows".to_owned(), plan.samples.to_string()));
         let mut checkpoints =
             Checkpoints { place, every: files.every.unwrap_or(Checkpoint::EVERY), identity, from: None };
         if let Some(path) = &files.resume {

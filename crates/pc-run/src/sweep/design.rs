@@ -14,7 +14,7 @@ pub struct Variation {
     /// The quantities that are drawn at random.
     pub random: Vec<Random>,
     /// The number of members to draw; none for a grid.
-    pub samples: Option<u64>,
+    pub members: Option<u64>,
     /// The seed of the random draws.
     pub seed: u64,
 }
@@ -51,7 +51,7 @@ impl Design {
     /// [`SweepError`] if a name is not in the model, is given twice or is also set, or there are
     /// too many members.
     pub fn new(model: &Model, variation: &Variation, set: &[&str]) -> Result<Design, SweepError> {
-        let Variation { vary, random, samples, seed } = variation;
+        let Variation { vary, random, members, seed } = variation;
         let varied = vary.iter().map(|vary| vary.name.as_str());
         let names: Vec<&str> = varied.chain(random.iter().map(|random| random.name.as_str())).collect();
         for (i, &name) in names.iter().enumerate() {
@@ -61,14 +61,14 @@ impl Design {
         }
         let mut counts = vary.iter().map(|vary| vary.values.count());
         let grid = || counts.try_fold(1, u64::checked_mul);
-        let members = samples.or_else(grid).ok_or(SweepError::TooMany)?;
-        let values = match samples {
+        let count = members.or_else(grid).ok_or(SweepError::TooMany)?;
+        let values = match members {
             Some(_) => {
                 Values::Random { laws: random.iter().map(|Random { law, .. }| *law).collect(), seed: *seed }
             }
             None => Values::Grid(vary.clone()),
         };
-        Ok(Design { targets: targets(model, &names)?, values, members })
+        Ok(Design { targets: targets(model, &names)?, values, members: count })
     }
 
     /// Members with these values of the named quantities; `values` contains those of one member after the

@@ -118,7 +118,7 @@ impl Sweep {
             sweep_columns,
             threads: wishes.threads,
             members,
-            is_random: variation.samples.is_some(),
+            is_random: variation.members.is_some(),
             counts: variation.vary.iter().map(|vary| vary.values.count()).collect(),
             header: header(depends_on, variation, wishes),
         })
@@ -341,7 +341,7 @@ fn header(depends_on: Identity, variation: &Variation, wishes: &SweepWishes) -> 
     let entries = [
         ("--vary", list(&mut variation.vary.iter().map(ToString::to_string))),
         ("--random", list(&mut variation.random.iter().map(ToString::to_string))),
-        ("--samples", number(variation.samples.map(|samples| samples.to_string()))),
+        ("--members", number(variation.members.map(|members| members.to_string()))),
         ("--seed", variation.seed.to_string()),
         ("--rows", number(wishes.run.samples.map(|rows| rows.to_string()))),
     ];

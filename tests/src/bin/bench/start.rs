@@ -12,7 +12,7 @@ use crate::report::{Report, target_directory, triple};
 const RUNS: usize = 30;
 /// What is timed: loading the program alone, and a derivation with an integration that is over at once.
 const COMMAND_LINES: [&[&str]; 2] =
-    [&["--version"], &["run", "heavy-top-lagrange", "--samples", "2", "--t-end", "1e-6"]];
+    [&["--version"], &["run", "heavy-top-lagrange", "--rows", "2", "--t-end", "1e-6"]];
 
 /// Times the program.
 ///

@@ -50,7 +50,7 @@ pub(super) fn examine(tried: &mut Tried<'_>) {
     }
     for (member, value) in values.into_iter().enumerate() {
         let mut run =
-            vec!["--set".to_owned(), format!("{name}={value:?}"), "--samples".to_owned(), "2".to_owned()];
+            vec!["--set".to_owned(), format!("{name}={value:?}"), "--rows".to_owned(), "2".to_owned()];
         run.extend(arguments.clone());
         if let Some(difference) = of_member(tried, &table, member, &run) {
             let detail = format!("{difference}: sweep {}; run {}", sweep.join(" "), run.join(" "));

@@ -60,7 +60,7 @@ pub(super) fn examine(tried: &mut Tried<'_>) {
         arguments.extend(["--method".to_owned(), method.to_owned()]);
     }
     if rows != ROWS {
-        arguments.extend(["--samples".to_owned(), rows.to_string()]);
+        arguments.extend(["--rows".to_owned(), rows.to_string()]);
     }
     if reactions {
         arguments.extend(["--outputs".to_owned(), "reactions".to_owned()]);

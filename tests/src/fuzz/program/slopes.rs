@@ -25,7 +25,7 @@ pub(super) fn examine(tried: &mut Tried<'_>) {
     }
     let name = tried.random.pick(&tried.parameters).0.clone();
     let Some(value) = tried.value_of(&name) else { return };
-    let rows = ["--samples", "3"].map(str::to_owned);
+    let rows = ["--rows", "3"].map(str::to_owned);
     let arguments = [vec!["--sensitivities".to_owned(), name.clone()], rows.to_vec()].concat();
     let Some(text) = tried.output("pc run --sensitivities", "run", &arguments) else { return };
     let Some(table) = tried.table(&text, &arguments, |_, _| true) else { return };
@@ -42,7 +42,7 @@ pub(super) fn examine(tried: &mut Tried<'_>) {
 
 /// Whether the motion beside the derivatives is that of tight tolerances.
 fn is_resolved(tried: &mut Tried<'_>, table: &Table) -> bool {
-    let run = [&["--samples", "3"][..], &TIGHT].concat();
+    let run = [&["--rows", "3"][..], &TIGHT].concat();
     let run: Vec<String> = run.into_iter().map(str::to_owned).collect();
     let text = tried.output("pc run", "run", &run);
     let Some(tight) = text.and_then(|text| Table::of(&text).ok()) else { return false };
@@ -57,7 +57,7 @@ fn is_resolved(tried: &mut Tried<'_>, table: &Table) -> bool {
 fn differences(tried: &mut Tried<'_>, name: &str, value: f64, step: f64) -> Option<Vec<(String, f64)>> {
     let mut end = |value: f64| {
         let set = format!("{name}={value:?}");
-        let run = [&["--set", &set, "--samples", "3"][..], &TIGHT].concat();
+        let run = [&["--set", &set, "--rows", "3"][..], &TIGHT].concat();
         let run: Vec<String> = run.into_iter().map(str::to_owned).collect();
         Table::of(&tried.output("pc run", "run", &run)?).ok()
     };

@@ -50,7 +50,7 @@ pub(crate) fn by_program(model: &str, asked: &Asked<'_>, further: &[&str]) -> (M
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("run.json");
     let mut command = Command::new(env!("CARGO_BIN_EXE_pc"));
-    command.args(["run", model, "--outputs", "reactions", "--samples", &SAMPLES.to_string(), "-o"]);
+    command.args(["run", model, "--outputs", "reactions", "--rows", &SAMPLES.to_string(), "-o"]);
     command.arg(&path).args(further).args(["--form", if asked.canonical { "canonical" } else { "poincare" }]);
     command
         .args(asked.set.iter().flat_map(|(name, value)| ["--set".to_owned(), format!("{name}={value:e}")]));
