@@ -24,6 +24,9 @@ for (const end of ["]]>", "</script", "<!--"]) {
     throw new Error(`the bundle contains ${end}`);
   }
 }
+if (/[^\P{Cc}\t\n]/u.test(script)) {
+  throw new Error("the bundle contains control characters, which XML has not");
+}
 // Names of namespaces are no requests; anything else that looks like an address could be one.
 const addresses = script.match(/\b(?:https?|wss?):\/\/[^\s"'`)]*/g) ?? [];
 const namespaces = ["http://www.w3.org/1999/xhtml", "http://www.w3.org/2000/svg"];

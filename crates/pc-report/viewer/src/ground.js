@@ -2,9 +2,11 @@
 // shadows on them.
 
 import {
-  Color, DoubleSide, Group, Mesh, PlaneGeometry, ShaderMaterial, ShadowMaterial, Vector2, Vector3,
+  Color, CustomBlending, DoubleSide, Group, Mesh, OneFactor, OneMinusSrcAlphaFactor, PlaneGeometry, ShaderMaterial,
+  ShadowMaterial, SrcAlphaFactor, Vector2, Vector3,
 } from "three";
 import { roundBelow, smoothStep } from "./numbers.js";
+import { SHADED } from "./stage.js";
 
 // Half the width of the grid, in units of the size of the model.
 const REACH = 9;
@@ -13,6 +15,12 @@ const LINES = 5;
 const STRONG = 5;
 // How far the wall is behind the plane of the motion.
 const BEHIND = 0.07;
+
+// Drawn before all else, and behind it, though it is not opaque: what lies on the ground is not hidden by it.
+const UNDERNEATH = {
+  transparent: false, depthWrite: false, blending: CustomBlending, blendSrc: SrcAlphaFactor,
+  blendDst: OneMinusSrcAlphaFactor, blendSrcAlpha: OneFactor, blendDstAlpha: OneMinusSrcAlphaFactor,
+};
 
 const VERTEX = /* glsl */ `
   uniform vec2 offset;
@@ -61,14 +69,13 @@ class Sheet {
       reach: { value: REACH },
       offset: { value: new Vector2() },
     };
-    // A trail on the ground is in front of the ground.
-    const behind = { depthWrite: false, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 8 };
     this.grid = new ShaderMaterial({
-      uniforms, vertexShader: VERTEX, fragmentShader: FRAGMENT, transparent: true, side: DoubleSide, ...behind,
+      uniforms, vertexShader: VERTEX, fragmentShader: FRAGMENT, side: DoubleSide, ...UNDERNEATH,
     });
-    this.shadow = new ShadowMaterial(behind);
+    this.shadow = new ShadowMaterial(UNDERNEATH);
     const grid = new Mesh(plane, this.grid);
-    const shadow = new Mesh(plane, this.shadow);
+    // No larger than what may be in the shade.
+    const shadow = new Mesh(new PlaneGeometry(3 * SHADED, 3 * SHADED), this.shadow);
     shadow.receiveShadow = true;
     [shadow, grid].forEach((mesh, i) => {
       mesh.renderOrder = i - 2;

@@ -11,6 +11,7 @@ import { listenToGestures } from "./gestures.js";
 import { Ground } from "./ground.js";
 import { listenToKeys } from "./keys.js";
 import { Labels } from "./labels.js";
+import { Pace } from "./pace.js";
 import { Pose } from "./pose.js";
 import { ScaleBar } from "./scalebar.js";
 import { Shapes } from "./shapes/shapes.js";
@@ -19,7 +20,7 @@ import { Theme } from "./theme.js";
 import { Trails } from "./trails.js";
 
 // A longer time between two pictures is not made up for.
-const LONGEST_STEP = 0.1;
+const LONGEST_STEP = 0.5;
 
 class Viewer {
   constructor(root, data, context) {
@@ -32,6 +33,7 @@ class Viewer {
     this.extent = measured(data);
     this.clock = new Clock(data.times);
     this.pose = new Pose(data);
+    this.pace = new Pace();
     this.theme = new Theme(root);
     this.stage = new Stage(this.canvas, context, this.extent);
     const { world } = this.stage;
@@ -147,7 +149,7 @@ class Viewer {
     }
     this.size = { width, height };
     this.viewpoint.aspect = width / height;
-    this.stage.resize(width, height);
+    this.stage.resize(width, height, 1);
     this.trails.resize(width, height);
     this.labels.measure();
     // A view that nobody has changed stays fitted.
@@ -168,8 +170,10 @@ class Viewer {
       this.clock.advance(seconds);
     }
     const isTurning = this.viewpoint.advance(seconds);
-    this.draw();
     const goesOn = this.clock.isPlaying || isTurning;
+    this.pace.measure(seconds);
+    this.stage.resize(this.size.width, this.size.height, goesOn ? this.pace.scale : 1);
+    this.draw();
     this.stamp = goesOn ? stamp : undefined;
     if (goesOn) {
       this.request();

@@ -11,7 +11,7 @@ const SUN = new Vector3(-2, 4.5, 3.2);
 // In front of a wall, rather from before, so that shadows on it are not long.
 const SUN_AT_WALL = new Vector3(-1.2, 2.6, 5);
 // The half width of what may cast a shadow, in units of the size of the model.
-const SHADED = 1.6;
+export const SHADED = 1.6;
 
 export class Stage {
   constructor(canvas, context, extent) {
@@ -56,9 +56,13 @@ export class Stage {
     this.fill.position.copy(target).sub(this.towardsSun).setY(target.y + this.towardsSun.y / 4);
   }
 
-  resize(width, height) {
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, FINEST));
-    this.renderer.setSize(width, height, false);
+  // `scale` is the part of the pixels of the screen that are drawn along each side.
+  resize(width, height, scale) {
+    const ratio = scale * Math.min(window.devicePixelRatio || 1, FINEST);
+    const [wide, high] = [width, height].map((length) => Math.max(1, Math.floor(length * ratio)));
+    if (wide !== this.canvas.width || high !== this.canvas.height) {
+      this.renderer.setDrawingBufferSize(width, height, ratio);
+    }
   }
 
   render(camera) {

@@ -1,10 +1,10 @@
 // Materials of solid shapes.
 
-import { Color, MeshStandardMaterial } from "three";
+import { Color, MeshPhongMaterial } from "three";
 
 // A surface whose colour `pick` takes from the theme.
 export function surface(pick, options = {}) {
-  const material = new MeshStandardMaterial({ roughness: 0.45, metalness: 0.05, ...options });
+  const material = new MeshPhongMaterial({ specular: 0x444444, shininess: 45, ...options });
   material.userData.pick = pick;
   return material;
 }
