@@ -9,6 +9,8 @@ const HALF = Math.tan(MathUtils.degToRad(FIELD / 2));
 const FILLED = 0.84;
 const STEEPEST = Math.PI / 2;
 const [NEAREST, FARTHEST] = [0.02, 400];
+// A fitted view is not closer, where there is only a point that does not move.
+const CLOSEST = 1.5;
 // How far behind the target there is something to see, in units of the model.
 const DEPTH = 60;
 const SECONDS = 0.45;
@@ -132,7 +134,7 @@ export class Viewpoint {
       }
     }
     if (places.length === 0) {
-      return { offset: new Vector3(), distance: 4 };
+      return { offset: new Vector3(), distance: CLOSEST };
     }
     const middle = low.map((x, k) => (x + high[k]) / 2);
     const room = [FILLED * HALF * this.aspect, FILLED * HALF];
@@ -145,7 +147,7 @@ export class Viewpoint {
       }
       return distance;
     };
-    const distance = clamp(needed(1), 0.1, FARTHEST);
+    const distance = clamp(needed(1), CLOSEST, FARTHEST);
     const offset = new Vector3();
     axes.forEach((axis, k) => offset.addScaledVector(axis, middle[k]));
     return { offset, distance };

@@ -70,7 +70,7 @@ export function measured(data) {
 }
 
 // Whether the model is a ball or a point, which does not show its motion relative to itself.
-function isSimple({ shapes }) {
+export function isSimple({ shapes }) {
   const solid = shapes.filter((shape) => shape.kind !== "trace" && shape.kind !== "text");
   return solid.length === 1 && (solid[0].kind === "sphere" || solid[0].kind === "point");
 }
@@ -79,7 +79,7 @@ function isSimple({ shapes }) {
 function flatAxis({ shapes, stills, width }, extent, path) {
   const least = Math.min(...extent);
   const flat = extent.lastIndexOf(least);
-  if (least > NOTHING * path) {
+  if (path === 0 || least > NOTHING * path) {
     return undefined;
   }
   const isAlong = (a) => a.every((x, k) => k === flat || !(Math.abs(x) > NOTHING));

@@ -2,17 +2,21 @@
 // shadows on them.
 
 import {
-  Color, CustomBlending, DoubleSide, Group, Mesh, OneFactor, OneMinusSrcAlphaFactor, PlaneGeometry, ShaderMaterial,
-  ShadowMaterial, SrcAlphaFactor, Vector2, Vector3,
+  BufferGeometry, Color, CustomBlending, DoubleSide, Group, Line, LineBasicMaterial, Mesh, OneFactor, OneMinusSrcAlphaFactor,
+  PlaneGeometry, ShaderMaterial, ShadowMaterial, SrcAlphaFactor, Vector2, Vector3,
 } from "three";
 import { roundBelow, smoothStep } from "./numbers.js";
 import { SHADED } from "./stage.js";
 
+// The height of a direction that counts as none.
+const LEVEL = 1e-3;
 // Half the width of the grid, in units of the size of the model.
 const REACH = 9;
 // Lines of the grid in the size of the model, and every how many is a strong one.
 const LINES = 5;
 const STRONG = 5;
+// Half the height of a picture up to which lines stay as close.
+const ROOM = 1.6;
 // How far the wall is behind the plane of the motion.
 const BEHIND = 0.07;
 
@@ -24,12 +28,13 @@ const UNDERNEATH = {
 
 const VERTEX = /* glsl */ `
   uniform vec2 offset;
+  uniform float coarse;
   varying vec2 place;
   varying vec2 apart;
   void main() {
-    place = position.xy + offset;
+    place = position.xy * coarse + offset;
     apart = position.xy;
-    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(position * coarse, 1.0);
   }
 `;
 
@@ -68,6 +73,7 @@ class Sheet {
       spacing: { value: this.spacing },
       reach: { value: REACH },
       offset: { value: new Vector2() },
+      coarse: { value: 1 },
     };
     this.grid = new ShaderMaterial({
       uniforms, vertexShader: VERTEX, fragmentShader: FRAGMENT, side: DoubleSide, ...UNDERNEATH,
@@ -98,10 +104,14 @@ class Sheet {
   }
 
   // Stays around what is looked at; `along` and `across` are its coordinates in the plane of the sheet from
-  // where the lines cross.
-  stay(along, across) {
-    const period = this.spacing * STRONG;
-    this.grid.uniforms.offset.value.set(along % period, across % period);
+  // where the lines cross. Where a greater height is seen, strong lines take the place of the others.
+  stay(along, across, halfHeight) {
+    const coarse = STRONG ** Math.ceil(Math.log(halfHeight / ROOM) / Math.log(STRONG));
+    const { offset, spacing, coarse: shown } = this.grid.uniforms;
+    shown.value = coarse;
+    spacing.value = this.spacing * coarse;
+    const period = spacing.value * STRONG;
+    offset.value.set(along % period, across % period);
   }
 }
 
@@ -115,7 +125,10 @@ export class Ground {
     this.floor.group.rotation.x = -Math.PI / 2;
     this.height = Math.min(a.y, b.y);
     this.group = new Group();
-    this.group.add(this.floor.group);
+    const ends = new BufferGeometry().setFromPoints([new Vector3(-1, 0, 0), new Vector3(1, 0, 0)]);
+    this.edge = new Line(ends, new LineBasicMaterial());
+    this.edge.frustumCulled = false;
+    this.group.add(this.floor.group, this.edge);
     if (isUpright) {
       this.wall = new Sheet(size);
       this.back = Math.min(a.z, b.z) - BEHIND;
@@ -126,21 +139,27 @@ export class Ground {
   colour(theme) {
     this.floor.colour(theme);
     this.wall?.colour(theme);
+    this.edge.material.color.copy(theme.soft);
   }
 
-  // `back` is the direction towards the eye.
-  follow(target, back) {
+  // For a view from this direction, of which half the height is seen.
+  follow(target, { right, back }, halfHeight) {
     this.floor.group.position.set(target.x, this.height, target.z);
-    this.floor.stay(target.x - this.origin.x, this.origin.z - target.z);
+    this.floor.stay(target.x - this.origin.x, this.origin.z - target.z, halfHeight);
     // Seen from below, the ground would hide what is above it.
     let seen = smoothStep(-0.3, -0.02, back.y);
     if (this.wall) {
       this.wall.group.position.set(target.x, target.y, this.back);
-      this.wall.stay(target.x - this.origin.x, target.y - this.origin.y);
+      this.wall.stay(target.x - this.origin.x, target.y - this.origin.y, halfHeight);
       const front = smoothStep(0.6, 0.95, back.z);
       this.wall.fade(front);
       seen *= 1 - front;
     }
     this.floor.fade(seen);
+    // Looked at along it, the ground is a line.
+    this.edge.visible = !this.wall && Math.abs(back.y) < LEVEL;
+    this.edge.position.set(target.x, this.height, target.z);
+    this.edge.rotation.y = Math.atan2(-right.z, right.x);
+    this.edge.scale.x = REACH * Math.max(1, halfHeight);
   }
 }

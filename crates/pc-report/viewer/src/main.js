@@ -192,7 +192,7 @@ class Viewer {
     const { target } = viewpoint;
     const directions = viewpoint.directions();
     this.stage.lightAt(target);
-    this.ground.follow(target, directions.back);
+    this.ground.follow(target, directions, viewpoint.halfHeight());
     this.stage.render(viewpoint.camera);
     this.labels.update(pose.numbers, (point) => viewpoint.seen(point, size), size);
     this.scaleBar.update(size.height / (2 * viewpoint.halfHeight()), size.width);

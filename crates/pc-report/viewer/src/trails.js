@@ -4,6 +4,7 @@
 import {
   BufferAttribute, BufferGeometry, Color, DoubleSide, Group, Mesh, ShaderMaterial, Vector2,
 } from "three";
+import { isSimple } from "./extent.js";
 
 const WIDTH = 3;
 // What is left of the oldest part, and the part of the motion during which a trail fades.
@@ -74,14 +75,16 @@ function ribbon(data, offset) {
 }
 
 export class Trails {
-  // Those of the model; if it has none, one for each point with a label and each sphere.
+  // Those of the model; if it has none, one for each point with a label and each sphere, or else for each point.
   constructor(data) {
     const own = data.shapes.filter((shape) => shape.kind === "trace");
-    const bodies = data.shapes.filter((shape) => (shape.kind === "point" && shape.text) || shape.kind === "sphere");
-    this.areWanted = own.length > 0;
+    const points = data.shapes.filter((shape) => shape.kind === "point" || shape.kind === "sphere");
+    const bodies = points.filter((shape) => shape.text || shape.kind === "sphere");
+    const others = bodies.length > 0 ? bodies : points;
+    this.areWanted = own.length > 0 || isSimple(data);
     this.screen = new Vector2(1, 1);
     this.group = new Group();
-    this.list = (this.areWanted ? own : bodies).map((shape) => {
+    this.list = (own.length > 0 ? own : others).map((shape) => {
       const uniforms = {
         colour: { value: new Color() },
         paper: { value: new Color() },
