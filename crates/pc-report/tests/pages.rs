@@ -81,10 +81,18 @@ fn an_oscillator_from_its_text_to_its_curves() {
     insta::assert_snapshot!(page);
 }
 
+/// The page without the viewer, which is the same on all pages: within it are names of namespaces.
+fn without_viewer(page: &str) -> String {
+    match page.split_once("<script>/*<![CDATA[*/") {
+        Some((before, rest)) => before.to_owned() + rest.split_once("/*]]>*/</script>").unwrap().1,
+        None => page.to_owned(),
+    }
+}
+
 /// Checks that every page satisfies; `name` is the model.
 fn check(name: &str, page: &str) {
-    assert!(page.len() < 1_000_000, "{name}: {} bytes", page.len());
-    assert!(!page.contains("http"), "{name}: nothing from elsewhere");
+    assert!(page.len() < 1_500_000, "{name}: {} bytes", page.len());
+    assert!(!without_viewer(page).contains("http"), "{name}: nothing from elsewhere");
     let xml = parsed(page);
     let with = |tag: &'static str| xml.descendants().filter(move |node| node.has_tag_name(tag));
     let ids: Vec<&str> = xml.descendants().filter_map(|node| node.attribute("id")).collect();

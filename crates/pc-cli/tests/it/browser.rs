@@ -69,7 +69,9 @@ impl Drop for Browser {
 fn browse(chromium: &Path, directory: &Path, more: &[&str], page: &Path) -> Output {
     let mut command = Command::new(chromium);
     command
-        .args(["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"])
+        .args(["--headless", "--no-sandbox", "--disable-quic", "--no-first-run"])
+        // WebGL without a graphics card.
+        .args(["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"])
         .args(["--disable-background-networking", "--disable-component-update", "--disable-sync"])
         .args(["--disable-dev-shm-usage", "--hide-scrollbars", "--host-resolver-rules=MAP * ~NOTFOUND"])
         .arg(format!("--user-data-dir={}", directory.join("profile").display()))

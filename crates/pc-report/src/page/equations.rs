@@ -6,7 +6,7 @@ use pc_print::{DisplayedEquations, Form, Layout, displayed_equations};
 use crate::page::formulas;
 use crate::page::html::{lines, paragraph, text};
 
-/// Equations that take more bytes than this are left to `pc derive`, so that a page stays below a megabyte.
+/// Equations that take more bytes than this are left to `pc derive`, so that a page is not too long.
 const LONGEST: usize = 120_000;
 
 /// Poincaré's equations, followed by the other forms.

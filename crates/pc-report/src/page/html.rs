@@ -66,13 +66,13 @@ pub(crate) fn described<L: AsRef<str>>(entries: &[(L, Vec<String>)]) -> String {
     )
 }
 
-/// A page without external resources.
-pub(crate) fn page(title: &str, body: &str) -> String {
+/// A page without external resources; `style` is what some of its parts need beyond the style of all pages.
+pub(crate) fn page(title: &str, style: &str, body: &str) -> String {
     let title = text(title);
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
-         <meta name=\"color-scheme\" content=\"light dark\"/>\n<title>{title}</title>\n<style>\n{}</style>\n</head>\n\
+         <meta name=\"color-scheme\" content=\"light dark\"/>\n<title>{title}</title>\n<style>\n{}{style}</style>\n</head>\n\
          <body>\n{body}</body>\n</html>\n",
         include_str!("style.css")
     )

@@ -8,8 +8,7 @@ use crate::check::check::Check;
 use crate::error::ReportError;
 use crate::page::html::{Part, described, lines, page, paragraph, text};
 use crate::page::pairs::pairs;
-use crate::page::player::player;
-use crate::page::{equations, formulas, motion, theory};
+use crate::page::{equations, formulas, motion, player, theory};
 use crate::recording::Recording;
 use crate::scene::Scene;
 
@@ -45,9 +44,13 @@ pub fn report(
         ),
         Part::new("theory", "Theory of the motions", theory::theory(&found)),
     ];
+    let mut style = "";
     if let Some(record) = motion {
         let scene = Scene::of(model, assembly, record)?;
-        let watched = scene.as_ref().map_or_else(String::new, player);
+        let mut watched = String::new();
+        if let Some(scene) = &scene {
+            (watched, style) = (player::player(scene), player::STYLE);
+        }
         let shown = motion::motion(record, &pairs(assembly, record));
         parts.push(Part::new("motion", "Motion", watched + &shown));
     }
@@ -58,7 +61,7 @@ pub fn report(
     };
     assembly.within_limits()?;
     parts.insert(0, Part::new("verdicts", "Verdicts", described(&check.compared(second).entries())));
-    Ok(page(model.title(), &(head(model, &parts) + &body(&parts))))
+    Ok(page(model.title(), style, &(head(model, &parts) + &body(&parts))))
 }
 
 fn body(parts: &[Part]) -> String {

@@ -9,7 +9,7 @@ use crate::picture::plane;
 /// Formulas that take more bytes than this are left to `pc theory`.
 const LONGEST: usize = 60_000;
 
-/// Parts that take more bytes than this are left out too, so that a page stays below a megabyte.
+/// Parts that take more bytes than this are left out too, so that a page is not too long.
 const LONGEST_PART: usize = 90_000;
 
 /// The parts of the theory, each under a heading.

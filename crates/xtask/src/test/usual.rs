@@ -31,7 +31,7 @@ pub(crate) const LONG: [(&str, &str); 15] = [
     ("pc-cli it", "checkpoint::a_run_with_events_gives_the_same_bytes_from_each_checkpoint"),
     ("pc-cli it", "help::the_examples_run"),
     ("pc-cli it", "program::models_and_algebras_are_listed"),
-    ("pc-cli it", "report::the_page_of_a_platform_on_six_legs_is_below_a_megabyte"),
+    ("pc-cli it", "report::the_page_of_a_platform_on_six_legs_is_not_too_long"),
     ("pc-cli it", "sweep_of::what_was_cut_short_goes_on_and_gives_the_same_bytes"),
     ("pc-cli it", "theory::all_models_have_a_theory"),
     ("pc-cli it", "verdicts::check_and_linearize_agree_on_stability"),

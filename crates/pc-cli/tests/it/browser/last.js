@@ -13,11 +13,10 @@ window.addEventListener("load", function () {
     var player = document.getElementById("player"), frames = null, painted = 0;
     if (player && player.player) {
       frames = FRAMES.map(function (n) { player.player.show(n); return player.player.frame(); });
-      var canvas = player.querySelector("canvas");
-      var pixels = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
-      for (var i = 3; i < pixels.length; i += 4) { if (pixels[i] > 0) { painted++; } }
+      painted = player.player.pixels();
     }
-    var small = Array.from(document.querySelectorAll("svg")).filter(function (s) { return box(s).width < 100 || box(s).height < 50; });
+    // Pictures on buttons are small.
+    var small = Array.from(document.querySelectorAll("svg:not([aria-hidden])")).filter(function (s) { return box(s).width < 100 || box(s).height < 50; });
     parent.postMessage(JSON.stringify({
       wrong: window.wrong,
       width: window.innerWidth,

@@ -1,0 +1,53 @@
+// The motion as the page contains it: shapes, times, and the numbers of all shapes still by still.
+
+// Shapes with a colour of their own; the others have that of rods.
+const COLOURED = new Set(["point", "disc", "sphere", "box", "trace"]);
+const COLOURS = 8;
+
+// Numbers in IEEE 754 single precision, least significant byte first, encoded in base 64.
+function numbers(text) {
+  const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+  const view = new DataView(bytes.buffer);
+  return Float32Array.from({ length: bytes.length / 4 }, (_, i) => view.getFloat32(4 * i, true));
+}
+
+export function decoded(text) {
+  const { shapes: listed, times, frames, gravity } = JSON.parse(text);
+  let width = 0;
+  let hue = 0;
+  const shapes = listed.map(([kind, count, words]) => {
+    const shape = { kind, at: width, count, text: words, hue: hue % COLOURS };
+    width += count;
+    hue += COLOURED.has(kind) ? 1 : 0;
+    return shape;
+  });
+  return { shapes, width, gravity, times: numbers(times), stills: numbers(frames) };
+}
+
+// The offsets of the positions among the numbers of a shape.
+export function positionsOf(shape) {
+  if (shape.kind === "line" || shape.kind === "spring") {
+    return Array.from({ length: shape.count / 3 }, (_, i) => shape.at + 3 * i);
+  }
+  return [shape.at];
+}
+
+const finite = (x) => (Number.isFinite(x) ? Math.abs(x) : 0);
+
+// How far a shape reaches from its position along each of the fixed axes.
+export function reachOf(shape, numbers, start = 0) {
+  const at = start + shape.at;
+  const own = (k) => finite(numbers[at + k]);
+  if (shape.kind === "disc") {
+    const normal = [own(3), own(4), own(5)];
+    const square = normal.reduce((sum, x) => sum + x * x, 0) || 1;
+    return normal.map((x) => own(6) * Math.sqrt(Math.max(0, 1 - (x * x) / square)));
+  }
+  if (shape.kind === "sphere") {
+    return [own(3), own(3), own(3)];
+  }
+  if (shape.kind === "box") {
+    return [6, 9, 12].map((row) => (own(row) * own(3) + own(row + 1) * own(4) + own(row + 2) * own(5)) / 2);
+  }
+  return [0, 0, 0];
+}
