@@ -23,13 +23,13 @@ pub enum CliError {
     /// MODEL is neither a file nor the name of a built-in model.
     #[error(
         "there is no file `{name}`, nor a built-in model of that name{}",
-        nearest.map_or(" (`pc models` lists them)".to_owned(), |name| format!("; did you mean `{name}`?"))
+        if meant.is_empty() { " (`pc models` lists them)".to_owned() } else { format!("; did you mean {}?", any_of(meant)) }
     )]
     NoSuchModel {
         /// As written.
         name: String,
-        /// The built-in model with nearly that name.
-        nearest: Option<&'static str>,
+        /// The built-in models that have the name as a part of theirs, or the one with nearly that name.
+        meant: Vec<&'static str>,
     },
     /// No command has this manual page.
     #[error(
@@ -151,6 +151,15 @@ pub enum CliError {
         /// What is found.
         of: &'static str,
     },
+}
+
+/// `a`, `b` or `c`
+fn any_of(names: &[&str]) -> String {
+    let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    match quoted.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+        _ => quoted.concat(),
+    }
 }
 
 impl From<FmuError> for CliError {

@@ -620,3 +620,80 @@ fn what_is_below_the_normal_numbers_is_no_difference() {
     assert!(agrees(2.3e-322).is_ok(), "{:?}", agrees(2.3e-322));
     assert!(matches!(agrees(1e-200), Err(VerifyError::Disagreement(_))));
 }
+
+/// A rod as long as the distance of two joints leaves the link free where the arm lies on the line of both: there, the
+/// velocity of the arm, which is the independent one, determines that of the link by a quotient of rounding errors.
+#[test]
+fn one_state_where_an_independent_velocity_fails_is_not_the_verdict() {
+    let linkage = r#"
+[coordinates]
+arm = 0.5
+link = 0.5
+[bodies.arm]
+joint = { kind = "revolute", axis = [0, 0, 1] }
+mass = 1.0
+inertia = [0.1, 0.1, 0.1]
+[bodies.link]
+joint = { kind = "revolute", axis = [0, 0, 1], at = [1, 0, 0] }
+mass = 1.0
+inertia = [0.1, 0.1, 0.1]
+[loops.pin]
+bodies = ["arm", "link"]
+kind = "rod"
+at = [[1, 0, 0], [1, 0, 0]]
+length = 1.0
+"#;
+    let model = model(linkage);
+    for seed in 0..40 {
+        let options = Options { states: 1, seed, ..Options::default() };
+        assert!(verified(&model, &options).unwrap().states >= 1);
+    }
+}
+
+/// Eleven velocities, which take two numbers of eight lanes: each derivative is that along one velocity alone.
+#[test]
+fn derivatives_along_many_velocities_are_those_along_each() {
+    let names: Vec<String> = (0..11).map(|i| format!("q{i}")).collect();
+    let coordinates: String = names.iter().map(|q| format!("{q} = 0.4\n")).collect();
+    let along: Vec<String> = names.iter().enumerate().map(|(i, q)| format!("{}*sin({q})", i + 1)).collect();
+    let kinetic: Vec<String> = names.iter().map(|q| format!("{q}'^2")).collect();
+    let text = format!(
+        "[coordinates]\n{coordinates}[constraints]\nheight = \"{} - 66*sin(0.4)\"\n\
+         slide = \"q10'*cos(q0) - q3'*q8 + q2'\"\n[lagrangian]\nkinetic = \"({})/2\"\n",
+        along.join(" + "),
+        kinetic.join(" + ")
+    );
+    let (graph, model) = (Graph::new(), model(&text));
+    let second = Second::new(&model, &model.assemble(&graph).unwrap()).unwrap();
+    let (derivation, at, exact) = (second.derivation(), second.start(), Rounding::none());
+    let which: Vec<usize> = (0..2).collect();
+    let matrix = derivation.constraint_matrix(&which, at, &exact).unwrap();
+    for s in 0..11 {
+        let column = derivation.constraint_rates(&which, at, &at.along_velocity(s), &exact).unwrap();
+        assert_near(&matrix.iter().map(|row| row[s]).collect::<Vec<f64>>(), &column);
+    }
+}
+
+/// 1 − cos φ is known to a part in 1e8 where φ = 1e-4, and each repetition with deliberate rounding errors shows that: 1 is a
+/// number that no operation has rounded.
+#[test]
+fn exact_operations_do_not_hide_what_a_difference_has_lost() {
+    let text = r#"
+[coordinates]
+"φ" = 1e-4
+[lagrangian]
+kinetic = "φ'^2/2"
+[outputs]
+lost = "1 - cos(φ)"
+"#;
+    let (graph, model) = (Graph::new(), model(text));
+    let second = Second::new(&model, &model.assemble(&graph).unwrap()).unwrap();
+    let derivation = second.derivation();
+    let lost = |rounding: &Rounding| {
+        derivation.still(second.start(), rounding).value(&derivation.text.observed[0].1).unwrap()
+    };
+    for seed in 1..=32 {
+        let moved = lost(&Rounding::made(seed)) - lost(&Rounding::none());
+        assert!(moved.abs() > 1e-17, "{seed}: {moved}");
+    }
+}

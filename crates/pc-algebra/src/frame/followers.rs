@@ -102,6 +102,23 @@ mod tests {
         assert_eq!(followers(&graph, &[x, y, z, c], &rows), [false, false, true, true]);
     }
 
+    /// Forty bodies on curves z = cos x, each with a coordinate that follows it; rows of different columns never meet.
+    #[test]
+    fn each_of_many_bodies_has_its_own_follower() {
+        const BODIES: usize = 40;
+        let graph = Graph::new();
+        let names = |name: &str| (0..BODIES).map(|i| graph.symbol(&format!("{name}{i}"))).collect::<Vec<_>>();
+        let (x, z) = (names("x"), names("z"));
+        let row = |i: usize| {
+            let entry = if i < BODIES { Expr::ONE } else { -x[i - BODIES].sin() };
+            (0..BODIES).map(|s| if s == i % BODIES { entry } else { Expr::ZERO }).collect::<Vec<_>>()
+        };
+        let rows: Vec<Vec<Expr<'_>>> = (0..2 * BODIES).map(row).collect();
+        let rows: Vec<&[Expr<'_>]> = rows.iter().map(Vec::as_slice).collect();
+        let expected: Vec<bool> = (0..2 * BODIES).map(|i| i >= BODIES).collect();
+        assert_eq!(followers(&graph, &[x.clone(), z].concat(), &rows), expected);
+    }
+
     #[test]
     fn on_a_circle_neither_coordinate_follows_the_other() {
         let graph = Graph::new();

@@ -213,6 +213,29 @@ fn lagranges_top_has_a_cyclic_displacement_by_its_symmetry() {
     assert_eq!(cyclic(&heisenberg), [(whole([0, 0, 1]), true)]);
 }
 
+/// Among more rates than are compared with all others: each of 68 masses has a spring of its own, two are joined by one that
+/// lets them move together, and two are free.
+#[test]
+fn cyclic_displacements_are_found_among_many_coordinates() {
+    let graph = Graph::new();
+    let names: Vec<String> = (0..72).map(|i| format!("q{i}")).collect();
+    let masses = System::builder(&graph)
+        .coordinates(names.iter().map(String::as_str))
+        .lagrangian(|_, q, v| {
+            let kinetic: Expr<'_> = v.iter().map(|v| v.square()).sum();
+            let springs: Expr<'_> = q[..68].iter().map(|q| q.square()).sum();
+            (kinetic - springs - (q[68] - 2.0 * q[69]).square()) / 2.0
+        })
+        .build()
+        .unwrap();
+    let along = |displacement: &[(usize, i32)]| {
+        let mut coefficients = vec![Number::integer(0); 72];
+        displacement.iter().for_each(|&(i, a)| coefficients[i] = Number::integer(a));
+        (coefficients, true)
+    };
+    assert_eq!(cyclic(&masses), [along(&[(68, 2), (69, 1)]), along(&[(70, 1)]), along(&[(71, 1)])]);
+}
+
 /// A symbol foreign to the motion is not an integral, and a quasi-velocity is not a momentum.
 #[test]
 fn functions_of_foreign_symbols_have_neither_rate_nor_bracket() {

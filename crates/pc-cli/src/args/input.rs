@@ -109,12 +109,15 @@ fn document(name: &str) -> Result<Document, CliError> {
     Ok(Document::from_bytes(name, &bytes)?)
 }
 
-/// The error for an unknown model, which suggests the model whose name is nearest.
+/// The error for an unknown model, which suggests the models that have the name as a part of theirs, or else the one whose name
+/// is nearest.
 pub(crate) fn no_such_model(name: &str) -> CliError {
     let stem = Path::new(name).file_stem().and_then(|stem| stem.to_str()).unwrap_or(name);
-    let nearest = nearest(stem, Builtin::all().map(|model| model.name));
-    let nearest = nearest.and_then(Builtin::named).map(|model| model.name);
-    CliError::NoSuchModel { name: name.to_owned(), nearest }
+    let names = || Builtin::all().map(|model| model.name);
+    let parted = format!("-{stem}-");
+    let akin: Vec<&'static str> = names().filter(|name| format!("-{name}-").contains(&parted)).collect();
+    let meant = if akin.is_empty() { nearest(stem, names()).into_iter().collect() } else { akin };
+    CliError::NoSuchModel { name: name.to_owned(), meant }
 }
 
 /// The system of a model and its equations in independent quasi-velocities, as expressions in `graph`.

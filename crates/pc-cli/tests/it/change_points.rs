@@ -269,3 +269,34 @@ fn a_velocity_that_loses_its_inertia_is_named() {
         assert!(help.starts_with(expected), "{help}");
     }
 }
+
+/// From t = 1e20 on, steps are shorter than the rounding of t; a length of zero was halved for ever.
+#[test]
+fn steps_shorter_than_the_rounding_of_time_come_to_an_end() {
+    let linkage = r#"
+[coordinates]
+arm = 0.4
+link = 0.4
+[quasi_velocities]
+"arm'" = 0.0145
+"link'" = 0.0145
+[bodies.arm]
+joint = { kind = "revolute", axis = [0, 0, 1] }
+mass = 1.0
+inertia = [0.1, 0.1, 0.1]
+[bodies.link]
+joint = { kind = "revolute", axis = [0, 0, 1], at = [1, 0, 0] }
+mass = 1.0
+inertia = [0.1, 0.1, 0.1]
+[loops.pin]
+bodies = ["arm", "link"]
+kind = "rod"
+at = [[1, 0, 0], [1, 0, 0]]
+length = 1.0
+[simulation]
+t_start = 1e20
+"#;
+    let (code, _, said) = run(linkage, &["--t-end", "0", "--method", "dop853", "--max-steps", "100"]);
+    assert_eq!(code, Some(5), "{said}");
+    assert!(said.contains("100 steps were not enough"), "{said}");
+}

@@ -232,6 +232,11 @@ fn a_file_of_the_current_directory_comes_before_a_built_in_model() {
 fn wrong_usage_is_exit_2_and_suggests_a_correction() {
     refuses(&["run", "heavy-top-lagrang"], 2, "did you mean `heavy-top-lagrange`?");
     refuses(&["run", "no/such/file.toml"], 2, "no file `no/such/file.toml`");
+    let tops = "did you mean `heavy-top-lagrange`, `heavy-top-kovalevskaya`, `heavy-top-goryachev-chaplygin`, \
+                `heavy-top-euler`, `heavy-top-euler-symmetric` or `heavy-top-quaternion`?";
+    refuses(&["check", "heavy-top"], 2, tops);
+    refuses(&["check", "kapitsa-pendulum"], 2, "did you mean `kapitza-pendulum`?");
+    refuses(&["check", "heavy-top-eulr"], 2, "did you mean `heavy-top-euler`?");
     refuses(&["run", "."], 2, "cannot read .");
     refuses(&["run", "euler-top", "--set", "I4=1"], 2, "its parameters are I1, I2, I3, its start values ω1");
     refuses(&["run", "euler-top", "--set", "I1=one"], 2, "`one` is not a finite number");

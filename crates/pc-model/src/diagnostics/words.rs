@@ -3,6 +3,8 @@
 use pc_expr::parse::nearest;
 use pc_expr::readable;
 
+use crate::diagnostics::notation::meant;
+
 pub(crate) fn at(state: &[(String, f64)]) -> String {
     let values: Vec<String> = state.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     if values.is_empty() { String::new() } else { format!(" ({})", values.join(", ")) }
@@ -32,7 +34,8 @@ pub(crate) fn listed(names: &[String]) -> String {
 }
 
 pub(crate) fn suggest(name: &str, known: &[String], otherwise: &str) -> String {
-    match nearest(name, known.iter().map(String::as_str)) {
+    let known = || known.iter().map(String::as_str);
+    match meant(name, known()).or_else(|| nearest(name, known())) {
         Some(word) => format!("did you mean `{word}`? {otherwise}"),
         None => otherwise.to_owned(),
     }

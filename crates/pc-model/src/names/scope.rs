@@ -30,6 +30,9 @@ pub(crate) struct Written<'g> {
 /// to it as long as the sum.
 const MOST_SHOWN: usize = 600;
 
+/// What an allocator keeps beside each piece of memory: its header and, on average, the rest of the last 16 bytes.
+const ALLOCATED: usize = 24;
+
 /// Where a part is written: in which definition, if any, and in which branches of `step`.
 #[derive(Clone, Default)]
 pub(super) struct Context<'g> {
@@ -203,8 +206,11 @@ impl<'g, 'd> Scope<'g, 'd> {
         let text = expression.text.get(span.start..span.end).unwrap_or_default();
         let end = text.char_indices().nth(MOST_SHOWN).map_or(text.len(), |(end, _)| end);
         let (text, context) = (text[..end].to_owned(), self.context.clone());
-        self.graph.charge(size_of::<Written<'_>>() + text.len());
-        self.written.push(Written { value, place: expression.place(span), text, context });
+        let place = expression.place(span);
+        let apart = text.len() + place.entry.len() + context.branches.len() * size_of::<Branch<'_>>();
+        // While a list grows, there are two of it, the new one with twice the places of the old one.
+        self.graph.charge(2 * size_of::<Written<'_>>() + apart + 2 * ALLOCATED);
+        self.written.push(Written { value, place, text, context });
     }
 
     /// The written parts that affect the result at these values: those in branches of `step` that are not
@@ -484,9 +490,10 @@ impl<'g, 'd> Scope<'g, 'd> {
         let coordinates = document.coordinates.iter().map(|c| &c.name.text);
         let quasi_velocities = document.quasi_velocities.iter().map(|q| &q.name.text);
         let states = document.states.iter().map(|state| &state.name.text);
+        let rates = coordinates.clone().map(|x| format!("{x}'"));
         let moving = coordinates.chain(quasi_velocities).chain(states);
         let inputs = document.inputs.iter().map(|input| &input.name.text);
-        let others = self.others.iter().filter_map(|other| other.symbol_name());
+        let others = self.others.iter().filter_map(|other| other.symbol_name()).chain(rates);
         parameters.chain(inputs).chain(definitions).chain(moving).cloned().chain(others).collect()
     }
 }

@@ -103,12 +103,15 @@ fn compared(
         }
     };
     let mut number = 0;
-    while agreement.states < states && number < TRIES * states {
+    // A form that is noise where it was evaluated is evaluated elsewhere before it is judged.
+    let is_undecided =
+        |firsts: &[First<'_>]| firsts.iter().any(|first| first.compared == 0 && first.noise.is_some());
+    while (agreement.states < states || is_undecided(&firsts)) && number < TRIES * states.max(FEW) {
         assembly.within_limits()?;
         let seed = (options.seed << 32) as usize + number;
         number += 1;
         let compared = second.derivation.random(&second.start, seed).map_err(Passed::from);
-        let outcome = compared.and_then(|place| match agreement.states < wholly {
+        let outcome = compared.and_then(|place| match agreement.states < wholly || is_undecided(&firsts) {
             true => second.compare(&mut firsts, &place, &mut agreement),
             false => second.compare_projected("poincare", &mut large, &place, &mut agreement),
         });
@@ -200,6 +203,9 @@ pub(crate) enum Compared<'g> {
 
 /// The number of states tried for each comparison required.
 const TRIES: usize = 3;
+
+/// A comparison at fewer states tries as many as one at this number before it gives up.
+const FEW: usize = 8;
 
 impl Agreement {
     fn finished(mut self, firsts: &[First<'_>], tried: usize) -> Result<Agreement, VerifyError> {

@@ -68,7 +68,8 @@ impl Motion {
         to: (f64, &[f64]),
         rates: &mut Rates<'_>,
     ) -> Result<(), Failure> {
-        if !self.surface.as_ref().is_some_and(|surface| surface.affine) {
+        // A step may be shorter than the rounding of a large time.
+        if from.0 == to.0 || !self.surface.as_ref().is_some_and(|surface| surface.affine) {
             return Ok(());
         }
         if self.watch.bridge(from.0, from.1).is_some_and(|bridge| bridge.end != from.0) {

@@ -2,6 +2,7 @@
 //! interval.
 
 use std::ops::Range;
+use std::sync::LazyLock;
 
 use pc_algebra::Matrix;
 
@@ -66,13 +67,10 @@ impl Collocation {
         let sizes = groups.iter().map(|group| (group.clone(), size(group))).collect();
         series[0] = slope;
         let mut motion = Collocation { start: t, end, from: y.to_vec(), series, sizes };
-        let nodes: Vec<f64> = nodes().collect();
-        let values =
-            Matrix::from_fn(nodes.len(), TERMS, |i, j| legendre(nodes[i]).nth(j).unwrap_or(f64::NAN));
-        let fit = LeastSquares::of(&values).ok()?;
+        let (nodes, fit) = FIT.as_ref()?;
         let (mut last, mut returns) = (f64::INFINITY, 0);
         for _ in 0..MOST_ITERATIONS {
-            let (series, moved) = motion.improved(flow, &nodes, &fit)?;
+            let (series, moved) = motion.improved(flow, nodes, fit)?;
             let before = motion.state(end);
             motion.series = series;
             let change = motion.distance(&before, &motion.state(end));
@@ -157,6 +155,14 @@ impl Collocation {
         self.sizes.iter().map(part).fold(0.0, larger)
     }
 }
+
+/// The positions of the nodes, and the equations Σ_j g_j P_j(x) = ẏ at them, which are the same for all motions.
+static FIT: LazyLock<Option<(Vec<f64>, LeastSquares)>> = LazyLock::new(|| {
+    let nodes: Vec<f64> = nodes().collect();
+    let values = Matrix::from_fn(nodes.len(), TERMS, |i, j| legendre(nodes[i]).nth(j).unwrap_or(f64::NAN));
+    let fit = LeastSquares::of(&values).ok()?;
+    Some((nodes, fit))
+});
 
 /// The larger of two numbers; NaN if one of them is NaN, whereas f64::max would return the other.
 fn larger(a: f64, b: f64) -> f64 {
