@@ -26,6 +26,7 @@ mod packages;
 mod python;
 mod python_environment;
 mod release;
+mod scripts;
 mod setup;
 mod test;
 mod tools;
@@ -58,6 +59,7 @@ usage: cargo xtask <command>
                    signals; 10 minutes unless told
   book             make target/book of the pages in docs by mdbook, which is fetched from PyPI unless it is installed
   header           write include/pc.h from the sources of the C interface
+  scripts          bundle the scripts of pages in crates/pc-report from their modules, by npm
   c-examples       build the examples in C and C++, run them, compare their numbers with those of `pc`, and run them
                    under sanitizers and valgrind
   fmu              validate and simulate FMUs of models by FMPy, which is installed into target/fmu, and compare their numbers
@@ -114,6 +116,10 @@ fn dispatch(arguments: &[String]) -> Result<(), Error> {
         "header" => {
             no_more(name, rest)?;
             header::run()
+        }
+        "scripts" => {
+            no_more(name, rest)?;
+            scripts::run()
         }
         "c-examples" => {
             no_more(name, rest)?;
