@@ -18,7 +18,7 @@ const VIEWER: &str = include_str!("../../viewer/dist/viewer.js");
 const CONTROLS: &str = r#"<div class="controls" role="group" aria-label="Controls of the motion">
 <div class="time"><button type="button" class="play" data-action="play">Play</button>
 <input type="range" min="0" max="0" value="0" step="1" aria-label="Time"/>
-<output></output></div>
+<output aria-live="off"></output></div>
 <div><button type="button" data-action="back">Step back</button><button type="button" data-action="ahead">Step ahead</button><button type="button" data-action="loop">Repeat</button></div>
 <label><span>Speed</span> <select data-list="speed"></select></label>
 <label><span>Follow</span> <select data-list="follow"></select></label>

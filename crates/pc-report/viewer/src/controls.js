@@ -52,7 +52,6 @@ export class Controls {
   offer(anchors, chosen, choose) {
     const list = this.root.querySelector("[data-list=follow]");
     list.append(...anchors.map(([value, words]) => new Option(words, value, value === chosen, value === chosen)));
-    list.closest("label").hidden = anchors.length < 2;
     list.addEventListener("change", () => choose(list.value));
   }
 

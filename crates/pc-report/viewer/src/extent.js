@@ -75,30 +75,31 @@ export function isSimple({ shapes }) {
   return solid.length === 1 && (solid[0].kind === "sphere" || solid[0].kind === "point");
 }
 
-// The axis to which all motion is perpendicular; undefined for a motion in space.
-function flatAxis({ shapes, stills, width }, extent, path) {
-  const least = Math.min(...extent);
-  const flat = extent.lastIndexOf(least);
-  if (path === 0 || least > NOTHING * path) {
-    return undefined;
-  }
-  const isAlong = (a) => a.every((x, k) => k === flat || !(Math.abs(x) > NOTHING));
+// The axis to which all motion is perpendicular, the last if there are more; undefined for a motion in space.
+function flatAxis(data, extent, path) {
+  const isFlat = (k) => path > 0 && extent[k] <= NOTHING * path && staysIn(data, k);
+  return [2, 1, 0].find(isFlat);
+}
+
+// Whether discs stay in the plane perpendicular to an axis, and what turns does so about the axis.
+function staysIn({ shapes, stills, width }, flat) {
   for (const shape of shapes) {
     for (let i = shape.at; i < stills.length; i += width) {
-      if (shape.kind === "disc" && !isAlong(stills.subarray(i + 3, i + 6))) {
-        return undefined;
+      const isTilted = (x, k) => k !== flat && Math.abs(x) > NOTHING;
+      if (shape.kind === "disc" && stills.subarray(i + 3, i + 6).some(isTilted)) {
+        return false;
       }
       const rotation = { box: 6, axes: 3 }[shape.kind];
       if (rotation !== undefined) {
         // One of the own axes stays perpendicular to the plane.
         const row = stills.subarray(i + rotation + 3 * flat, i + rotation + 3 * flat + 3);
-        if (row.reduce((most, x) => Math.max(most, Math.abs(x)), 0) < 1 - NOTHING) {
-          return undefined;
+        if (Math.max(...row.map(Math.abs)) < 1 - NOTHING) {
+          return false;
         }
       }
     }
   }
-  return flat;
+  return true;
 }
 
 // The directions right and up of the front view. Up is against gravity; without gravity it is the third axis, or

@@ -9,9 +9,9 @@ const GAP = 5;
 // Directions in which words are tried, the best first.
 const SIDES = [[1, -1], [1, 1], [-1, -1], [-1, 1], [1, 0], [-1, 0], [0, -1], [0, 1]];
 // What it costs to hide another label, a point, a rod; to be outside; to leave the side of the last picture.
-const COSTS = { label: 100, point: 20, rod: 3, outside: 1000, change: 2, rank: 0.2 };
-// Labels for which there is only worse room are not shown.
-const WORST = 100;
+const COSTS = { label: 100, point: 20, rod: 4, outside: 1000, change: 2, rank: 0.2 };
+// A label for which there is only worse room, where it would hide a point or a label, is not shown.
+const WORST = 15;
 
 const scratch = new Vector3();
 

@@ -4,6 +4,8 @@ import { CylinderGeometry, Group, Mesh, SphereGeometry, Vector3 } from "three";
 
 const CYLINDER = new CylinderGeometry(1, 1, 1, 20, 1, true);
 const BALL = new SphereGeometry(1, 20, 14);
+// Where rods meet, in units of their radius.
+const JOINT = 1.5;
 const UP = new Vector3(0, 1, 0);
 
 export class Rods {
@@ -13,7 +15,10 @@ export class Rods {
     this.ends = Array.from({ length: corners }, () => new Mesh(BALL, material));
     this.rods = Array.from({ length: corners - 1 }, () => new Mesh(CYLINDER, material));
     this.group.add(...this.ends, ...this.rods);
-    this.ends.forEach((end) => end.scale.setScalar(radius));
+    this.ends.forEach((end, n) => {
+      const isJoint = n > 0 && n + 1 < corners;
+      end.scale.setScalar(radius * (isJoint ? JOINT : 1));
+    });
   }
 
   // Through the points from index `i` on.
