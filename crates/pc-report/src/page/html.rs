@@ -2,6 +2,8 @@
 
 use pc_print::{one_line, visible};
 
+use crate::base64::base64;
+
 /// Text on one line, for use between elements or within quotation marks.
 pub(crate) fn text(text: &str) -> String {
     escaped(&one_line(text))
@@ -72,9 +74,20 @@ pub(crate) fn page(title: &str, body: &str) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
-         <meta name=\"color-scheme\" content=\"light dark\"/>\n<title>{title}</title>\n<style>\n{}</style>\n</head>\n\
+         <meta name=\"color-scheme\" content=\"light dark\"/>\n<title>{title}</title>\n<style>\n{}{}</style>\n</head>\n\
          <body>\n{body}</body>\n</html>\n",
-        include_str!("style.css")
+        include_str!("style.css"),
+        if body.contains("<math") { of_formulas() } else { String::new() }
+    )
+}
+
+/// The style of formulas, with their font: browsers without a mathematical font of their own would set roots
+/// and brackets in pieces that do not fit.
+fn of_formulas() -> String {
+    let font = base64(include_bytes!("../../fonts/STIXTwoMath-subset.woff2"));
+    format!(
+        "@font-face {{ font-family: \"pc formulas\"; src: url(data:font/woff2;base64,{font}) format(\"woff2\"); }}\n{}",
+        include_str!("formulas.css")
     )
 }
 
