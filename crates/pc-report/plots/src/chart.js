@@ -153,6 +153,7 @@ export function draw(chart, figure) {
     label: curve.name,
     stroke: () => colour(`--c${i % 8}`),
     width: 1.5,
+    pxAlign: 0,
     points: { show: false },
     value: (_plot, number) => name(decades ? exponential : value)(number ?? null),
   }));
@@ -174,6 +175,7 @@ export function draw(chart, figure) {
         }),
       ],
       cursor: {
+        y: false,
         drag: { x: true, y: false, dist: TREMBLE },
         sync: { key: "t", scales: ["x", null] },
         points: { size: 7 },

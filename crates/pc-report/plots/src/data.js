@@ -6,16 +6,14 @@ function numbers([offset, text]) {
   return Array.from(new Float32Array(bytes.buffer), (number) => (Number.isFinite(number) ? offset + number : null));
 }
 
-// The charts, each with the id of its figure, its times and its curves.
+// The charts, each with the id of its figure and its curves, and the paths, each with the ends of its axes.
 export function read(text) {
-  const { times, charts } = JSON.parse(text);
+  const { times, charts, paths } = JSON.parse(text);
   const lists = times.map(numbers);
-  return charts.map((chart) => ({
-    id: chart.id,
-    label: chart.label,
-    decades: chart.decades,
-    events: chart.events,
+  const drawn = charts.map((chart) => ({
+    ...chart,
     times: lists[chart.times],
     curves: chart.curves.map(([name, ...values]) => ({ name, values: numbers(values) })),
   }));
+  return { charts: drawn, paths };
 }

@@ -30,10 +30,17 @@ export function exponential(logarithm) {
   return scientific(10 ** logarithm, 1);
 }
 
+// The number of decimals that a step such as 0.25 needs.
+function decimalsOf(step) {
+  const size = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  const tenths = step * 10 ** size;
+  return Math.abs(tenths - Math.round(tenths)) < 1e-6 ? size : size + 1;
+}
+
 // The numbers beside an axis, all with as many decimals as the step between them needs.
 export function beside(numbers, step) {
   const largest = Math.max(...numbers.map(Math.abs));
-  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  const decimals = decimalsOf(step);
   if (largest >= 1e6 || decimals > 5) {
     const digits = Math.max(0, Math.floor(Math.log10(largest) + 1e-9) + decimals);
     return numbers.map((number) => (number === 0 ? "0" : scientific(number, Math.min(digits, 8))));
