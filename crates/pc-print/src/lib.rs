@@ -43,6 +43,7 @@ pub use equations::form::Form;
 pub use equations::operations::{Operations, counted};
 pub use equations::principle::{ForceSheet, InertiaSheet, MaggiSheet, Principle};
 pub use equations::sheet::{Balance, Bracket, Brackets, Sheet, recognised};
+pub use language::mathml::DisplayedEquation;
 pub use layout::format::Page;
 pub use layout::layout::Layout;
 pub use page::displayed::{

@@ -331,7 +331,7 @@ impl ModelCore {
             let parts = shown.parts.into_iter();
             let parts = parts
                 .map(|part| (part.title.to_owned(), part.display.map(|display| display.mathml), part.notes));
-            Ok((shown.name, shown.plain.map(|display| display.mathml), parts.collect()))
+            Ok((shown.name, shown.plain.map(|(text, _)| text), parts.collect()))
         })
     }
 

@@ -24,6 +24,7 @@
 //! Lower layers: [`pc_print`], formulas and words, and [`pc_verify`], the second derivation. Upper layers:
 //! [pc-cli](../pc_cli/index.html), where this crate serves `pc report`, `pc animate` and `pc check`.
 
+mod base64;
 mod check;
 mod error;
 #[cfg(feature = "files")]

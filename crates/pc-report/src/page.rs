@@ -1,8 +1,8 @@
 //! The page for a browser.
 //!
 //! A model is turned into a page of parts under headings. `html` escapes text and writes elements, `formulas`
-//! shows displays with their sources, `equations`, `theory` and `motion`, with the `player` and the `pairs`
-//! that portraits show, are the long parts, and `report` combines all parts. The page is XML as well as HTML:
+//! shows displays with their sources, `terms` breaks their lines, `equations`, `theory` and `motion`, with the `player`, the `plots` that
+//! answer to the mouse, the `vectors` that they keep together and the `pairs` that portraits show, are the long parts, and `report` combines all parts. The page is XML as well as HTML:
 //! every element is closed.
 
 mod equations;
@@ -11,5 +11,8 @@ pub(crate) mod html;
 mod motion;
 mod pairs;
 pub(crate) mod player;
+mod plots;
 pub(crate) mod report;
+mod terms;
 mod theory;
+mod vectors;

@@ -5,6 +5,7 @@ use pc_mech::{Expr, MechError};
 use pc_model::{Assembly, Model, ModelError, Shape};
 use serde_json::{Value, json};
 
+use crate::base64::numbers;
 use crate::recording::Recording;
 
 /// The largest number of values in all stills together, which take up a third of a megabyte.
@@ -175,26 +176,10 @@ impl Scene {
         json!({
             "shapes": shapes,
             "gravity": self.gravity,
-            "times": base64(&single),
-            "frames": base64(&self.stills),
+            "times": numbers(&single),
+            "frames": numbers(&self.stills),
         })
     }
-}
-
-const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-
-fn base64(numbers: &[f32]) -> String {
-    let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for group in bytes.chunks(3) {
-        let bits =
-            group.iter().fold(0u32, |bits, &byte| bits << 8 | u32::from(byte)) << (8 * (3 - group.len()));
-        for digit in 0..4 {
-            let known = digit <= group.len();
-            text.push(if known { char::from(DIGITS[(bits >> (18 - 6 * digit)) as usize & 63]) } else { '=' });
-        }
-    }
-    text
 }
 
 #[cfg(test)]
@@ -207,20 +192,5 @@ mod tests {
         let few = shown(601, 148);
         assert!(few.len() * 148 <= MOST_NUMBERS + 148 && few.first() == Some(&0) && few.last() == Some(&600));
         assert!(shown(0, 3).is_empty());
-    }
-
-    #[test]
-    fn numbers_are_written_in_base_64() {
-        // RFC 4648, section 10, by bytes: numbers have four each.
-        assert_eq!(base64(&[]), "");
-        assert_eq!(base64(&[f32::from_le_bytes(*b"foob")]), "Zm9vYg==");
-        assert_eq!(
-            base64(&[
-                f32::from_le_bytes(*b"foob"),
-                f32::from_le_bytes(*b"arfo"),
-                f32::from_le_bytes(*b"obar")
-            ]),
-            "Zm9vYmFyZm9vYmFy"
-        );
     }
 }

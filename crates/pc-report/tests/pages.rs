@@ -76,9 +76,13 @@ potential = \"k*x^2/2\"
 #[test]
 fn an_oscillator_from_its_text_to_its_curves() {
     let page = paged(&model(OSCILLATOR), Some(&record())).unwrap();
-    let style = page.find("<style>").unwrap()..page.find("</style>").unwrap();
-    let page = page.replace(&page[style], "<style>");
-    insta::assert_snapshot!(page);
+    let between = |page: &str, start: &str, end: &str| {
+        let first = page.find(start).unwrap() + start.len();
+        let length = page[first..].find(end).unwrap();
+        format!("{}{}", &page[..first], &page[first + length..])
+    };
+    let page = between(&page, "<style>", "</style>");
+    insta::assert_snapshot!(between(&page, "<script>", "</script>"));
 }
 
 /// The page without the viewer, which is the same on all pages: within it are names of namespaces.
@@ -105,7 +109,7 @@ fn check(name: &str, page: &str) {
     }
     assert!(with("math").count() > 3, "{name}: there are formulas");
     for math in with("math") {
-        let scrolls = math.parent().is_some_and(|parent| parent.attribute("class") == Some("formula"));
+        let scrolls = math.ancestors().any(|around| around.attribute("class") == Some("formula"));
         assert!(scrolls && math.has_children(), "{name}: a formula scrolls in its own box");
         for element in math.descendants().filter(Node::is_element) {
             let count = element.children().filter(Node::is_element).count();
@@ -131,9 +135,10 @@ fn check(name: &str, page: &str) {
         level = next;
     }
     assert!(with("details").filter(|node| node.descendants().any(|n| n.text() == Some("LaTeX"))).count() > 2);
-    // Only the player needs a script, and it is hidden until that runs.
-    let scripts = with("script").count();
-    assert_eq!(scripts, 2 * page.matches("id=\"player\" hidden=\"hidden\"").count(), "{name}");
+    // Only the player and the plots need scripts. The player is hidden until its script runs, and plots are pictures.
+    let players = page.matches("id=\"player\" hidden=\"hidden\"").count();
+    let plots = page.matches("id=\"plots-data\"").count();
+    assert_eq!(with("script").count(), 2 * (players + plots), "{name}");
 }
 
 #[test]
@@ -187,6 +192,30 @@ fn hostile_text_stays_text() {
     let heading = xml.descendants().find(|node| node.has_tag_name("h1")).unwrap();
     assert_eq!(heading.text(), Some(hostile));
     assert_eq!(page.matches("alert(1)").count(), page.matches("&lt;script&gt;alert(1)").count());
+}
+
+/// What the script of the plots finds on the page.
+#[test]
+fn plots_have_the_numbers_of_the_motion() {
+    let page = paged(&model(OSCILLATOR), Some(&record())).unwrap();
+    let xml = parsed(&page);
+    let by_id = |id: &str| xml.descendants().find(|node| node.attribute("id") == Some(id));
+    let data: serde_json::Value = serde_json::from_str(by_id("plots-data").unwrap().text().unwrap()).unwrap();
+    // 0, 0.5 and 1 in single precision.
+    assert_eq!(data["times"], serde_json::json!([[0.0, "AAAAAAAAAD8AAIA/"]]));
+    let charts = data["charts"].as_array().unwrap();
+    let names: Vec<&str> = charts.iter().filter_map(|chart| chart["curves"][0][0].as_str()).collect();
+    assert_eq!(names, ["φ", "x", "x'", "energy"]);
+    for chart in charts {
+        let figure = by_id(chart["id"].as_str().unwrap()).unwrap();
+        assert!(figure.has_tag_name("figure") && figure.descendants().any(|node| node.has_tag_name("svg")));
+    }
+    assert_eq!(charts[0]["events"], serde_json::json!([0.25]));
+    assert_eq!(charts[3]["decades"], true);
+    // The path of x' over x: its axes are wider than the values.
+    let path = &data["paths"][0];
+    assert_eq!((&path["x"], &path["y"]), (&"x".into(), &"x'".into()));
+    assert!(path["across"][0].as_f64() < Some(-1.0) && path["up"][1].as_f64() >= Some(0.0));
 }
 
 #[test]

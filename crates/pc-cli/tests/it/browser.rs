@@ -90,7 +90,7 @@ fn browse(chromium: &Path, directory: &Path, more: &[&str], page: &Path) -> Outp
 /// The page with the scripts that watch it, and a policy that forbids all requests.
 fn watched(page: &str) -> String {
     let policy = "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; \
-                  script-src 'unsafe-inline'\"/>";
+                  font-src data:; script-src 'unsafe-inline'\"/>";
     let first = format!("<script>{}</script>{policy}", include_str!("browser/first.js"));
     let last = include_str!("browser/last.js").replace("FRAMES", &format!("{FRAMES:?}"));
     let page = page.replacen("<head>", &format!("<head>{first}"), 1);
@@ -185,6 +185,10 @@ impl Case<'_> {
                     "{context}"
                 );
                 assert!(at("painted").as_u64() > Some(100), "the player draws: {context}");
+                assert_eq!(at("font").as_bool(), Some(true), "formulas have their font: {context}");
+                assert_eq!(at("cut").as_array().map(Vec::len), Some(0), "equations fit the page: {context}");
+                assert!(at("plots").as_u64() > Some(1), "plots answer: {context}");
+                assert_eq!(at("marked"), at("plots"), "they show the time of the page: {context}");
                 for (k, &row) in FRAMES.iter().enumerate() {
                     for (i, _) in self.places {
                         let column = rows[0].iter().position(|known| *known == format!("shown{i}"));

@@ -36,11 +36,11 @@ fn a_page_of_the_program_is_the_same_in_a_file_and_on_standard_output() {
     assert_eq!(
         titles,
         [
+            "Motion",
+            "Equations of motion",
             "Verdicts",
             "Frame and Lagrangian",
-            "Equations of motion",
             "Theory of the motions",
-            "Motion",
             "Text of the model"
         ]
     );

@@ -235,7 +235,7 @@ fn on_joints<'g>(assembly: &Assembly<'g>, points: &[(&str, Spot<'g>)], boxes: bo
         let ends = if ends.is_empty() { vec![centre] } else { ends };
         let rods: Vec<Spot<'g>> = ends.into_iter().filter(|end| *end != place).collect();
         if rods.is_empty() && boxes {
-            shapes.extend(block(assembly, (mass, &inertia), centre, rotation));
+            shapes.extend(block(assembly, (mass, &inertia), centre, &rotation));
         }
         shapes.extend(rods.into_iter().map(|end| Shape::Line { through: vec![place, end] }));
         shapes.push(Shape::Point { at: centre, label: Some(body.name().to_owned()) });

@@ -23,6 +23,32 @@ const HANGING: usize = 6;
 /// Terms as typeset, each with its width in columns when written in plain characters.
 pub(crate) type Terms = Vec<(String, usize)>;
 
+/// The two sides of an equation, each a row of MathML: elements side by side.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DisplayedEquation {
+    /// The left-hand side.
+    pub left: String,
+    /// The right-hand side.
+    pub right: String,
+}
+
+impl DisplayedEquation {
+    fn of((left, right): &(Terms, Terms)) -> DisplayedEquation {
+        let row = |terms: &Terms| terms.iter().map(|(term, _)| term.as_str()).collect();
+        DisplayedEquation { left: row(left), right: row(right) }
+    }
+}
+
+/// The equations of a part.
+pub(crate) struct Displayed {
+    /// All equations as one formula, with lines broken as in LaTeX.
+    pub(crate) table: String,
+    /// The meanings of the names that are first used here.
+    pub(crate) names: Vec<DisplayedEquation>,
+    /// The equations themselves.
+    pub(crate) equations: Vec<DisplayedEquation>,
+}
+
 /// Text for use between elements, with its markup characters escaped.
 pub(crate) fn escaped(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
@@ -82,18 +108,18 @@ pub(crate) fn combination(terms: impl Iterator<Item = (String, String, String)>)
 }
 
 /// The rows of a table, one below the other, as one formula.
-pub(crate) fn table(rows: &[String]) -> String {
+fn table(rows: &[String]) -> String {
     format!("<math display=\"block\"><mtable displaystyle=\"true\">{}</mtable></math>", rows.concat())
 }
 
 /// The two sides in one row, however long they are.
-pub(crate) fn row(left: &str, right: &str) -> String {
+fn row(left: &str, right: &str) -> String {
     format!("<mtr><mtd>{left}</mtd><mtd>{EQUALS}</mtd><mtd>{right}</mtd></mtr>")
 }
 
 /// The two sides in as many rows as needed: the right-hand side begins after a short left-hand side, or
 /// otherwise in a separate row.
-pub(crate) fn equation(left: Terms, right: Terms, width: usize) -> Vec<String> {
+fn equation(left: Terms, right: Terms, width: usize) -> Vec<String> {
     let columns: usize = left.iter().map(|(_, width)| width + 1).sum();
     if columns <= LONG_LEFT {
         let left: String = left.into_iter().map(|(term, _)| term).collect();
@@ -132,18 +158,19 @@ pub(crate) fn displays<'a, 'p>(
     operators: &'a [String],
     layout: &'a Layout,
     parts: &'a Parts<'p>,
-) -> Vec<(&'a Part<'p>, Option<String>)> {
+) -> Vec<(&'a Part<'p>, Option<Displayed>)> {
     let names = &parts.names;
-    let set = Set {
-        operators,
-        layout,
-        names,
-        set: names.written(Style::MathMl),
-        plain: names.written(Style::Book),
-    };
+    let set = Set { operators, names, set: names.written(Style::MathMl), plain: names.written(Style::Book) };
     let display = |(part, numbers): (&'a Part<'p>, Vec<usize>)| {
-        let rows: Vec<String> = set.meanings(&numbers).into_iter().chain(set.rows(part)).collect();
-        (part, (!rows.is_empty()).then(|| table(&rows)))
+        let (names, equations) = (set.meanings(&numbers), set.equations(part));
+        let both = names.iter().chain(&equations).cloned();
+        let rows: Vec<String> = both.flat_map(|(left, right)| equation(left, right, layout.width)).collect();
+        let displayed = || Displayed {
+            table: table(&rows),
+            names: names.iter().map(DisplayedEquation::of).collect(),
+            equations: equations.iter().map(DisplayedEquation::of).collect(),
+        };
+        (part, (!rows.is_empty()).then(displayed))
     };
     parts.with_names().map(display).collect()
 }
@@ -152,7 +179,6 @@ pub(crate) fn displays<'a, 'p>(
 struct Set<'a, 'p> {
     /// The names of the quasi-velocities to which operators belong.
     operators: &'a [String],
-    layout: &'a Layout,
     names: &'a Names<'p>,
     set: Written,
     /// The expressions of the sheet in plain characters, whose widths decide where lines are broken.
@@ -160,14 +186,14 @@ struct Set<'a, 'p> {
 }
 
 impl<'p> Set<'_, 'p> {
-    fn meanings(&self, numbers: &[usize]) -> Vec<String> {
+    fn meanings(&self, numbers: &[usize]) -> Vec<(Terms, Terms)> {
         let meaning = |&number: &usize| {
             let name = &self.names.list()[number];
             let widths = self.plain.meaning(name.value);
             let terms = self.set.meaning(name.value).into_iter().zip(widths.iter().map(|term| columns(term)));
-            self.equation(vec![(self.set.name(&name.name), columns(&name.name))], terms.collect())
+            (vec![(self.set.name(&name.name), columns(&name.name))], terms.collect())
         };
-        numbers.iter().flat_map(meaning).collect()
+        numbers.iter().map(meaning).collect()
     }
 
     fn terms(&self, line: Expr<'p>) -> Terms {
@@ -175,18 +201,12 @@ impl<'p> Set<'_, 'p> {
         self.set.terms(line).into_iter().zip(widths.iter().map(|term| columns(term))).collect()
     }
 
-    fn equation(&self, left: Terms, right: Terms) -> Vec<String> {
-        equation(left, right, self.layout.width)
-    }
-
-    fn rows(&self, part: &Part<'p>) -> Vec<String> {
-        let rows = part.rows.iter().map(|row| match row {
-            Row::Constraint { left, .. } => {
-                self.equation(vec![("<mn>0</mn>".to_owned(), 1)], self.terms(*left))
-            }
-            Row::Equation { left, right } => self.equation(self.terms(*left), self.terms(*right)),
+    fn equations(&self, part: &Part<'p>) -> Vec<(Terms, Terms)> {
+        let equations = part.rows.iter().filter_map(|row| match row {
+            Row::Constraint { left, .. } => Some((vec![("<mn>0</mn>".to_owned(), 1)], self.terms(*left))),
+            Row::Equation { left, right } => Some((self.terms(*left), self.terms(*right))),
             Row::Function { letter, value } => {
-                self.equation(vec![(format!("<mi>{letter}</mi>"), 1)], self.terms(*value))
+                Some((vec![(format!("<mi>{letter}</mi>"), 1)], self.terms(*value)))
             }
             Row::Bracket(Bracket { pair: [r, s], components }) => {
                 let left = format!(
@@ -195,20 +215,20 @@ impl<'p> Set<'_, 'p> {
                     self.operator(*s)
                 );
                 let components = components.iter().map(|&(m, c)| (c, self.operator(m)));
-                self.equation(vec![(left, 8)], self.combination(components))
+                Some((vec![(left, 8)], self.combination(components)))
             }
             Row::Symbol { indices, value } => {
                 let [r, s, m] = indices.map(|s| {
                     s.checked_sub(1).map_or("<mn>0</mn>".to_owned(), |s| self.set.name(&self.operators[s]))
                 });
                 let left = format!("<msubsup><mi>γ</mi><mrow>{r}{s}</mrow>{m}</msubsup>");
-                self.equation(vec![(left, 4)], self.terms(*value))
+                Some((vec![(left, 4)], self.terms(*value)))
             }
             Row::Operator { quasi_velocity, components } => {
                 let eta = quasi_velocity.as_deref().map(|name| self.set.name(name));
                 let left = operator(eta.as_deref().unwrap_or("<mn>0</mn>"));
                 let components = components.iter().map(|&(x, c)| (c, partial(&self.set.text(x))));
-                self.equation(vec![(left, 3)], self.combination(components))
+                Some((vec![(left, 3)], self.combination(components)))
             }
             Row::Force { letter, quasi_velocity, value } => {
                 let name = self.set.name(quasi_velocity);
@@ -216,17 +236,17 @@ impl<'p> Set<'_, 'p> {
                     None => format!("<msub><mi>{letter}</mi>{name}</msub>"),
                     Some(letter) => format!("<msubsup><mi>{letter}</mi>{name}<mo>*</mo></msubsup>"),
                 };
-                self.equation(vec![(left, 3)], self.terms(*value))
+                Some((vec![(left, 3)], self.terms(*value)))
             }
             Row::PartialVelocity { rate, quasi_velocity, value } => {
                 let (above, below) = (self.set.text(*rate), self.set.text(*quasi_velocity));
                 let left =
                     format!("<mfrac><mrow><mi>∂</mi>{above}</mrow><mrow><mi>∂</mi>{below}</mrow></mfrac>");
-                self.equation(vec![(left, 5)], self.terms(*value))
+                Some((vec![(left, 5)], self.terms(*value)))
             }
-            Row::Entry { .. } => Vec::new(),
+            Row::Entry { .. } => None,
         });
-        rows.flatten().collect()
+        equations.collect()
     }
 
     /// X_0, or the operator of a quasi-velocity.

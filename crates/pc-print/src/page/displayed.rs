@@ -9,7 +9,7 @@ use crate::equations::derived::Derived;
 use crate::equations::form::Form;
 use crate::equations::sheet::{Balance, Brackets, Sheet};
 use crate::language::latex;
-use crate::language::mathml;
+use crate::language::mathml::{self, Displayed, DisplayedEquation};
 use crate::language::text::{LEFT_OUT, no_brackets};
 use crate::layout::format::Page;
 use crate::layout::layout::Layout;
@@ -24,10 +24,21 @@ use crate::words::words::short;
 /// Formulas, one below the other.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Display {
-    /// A `math` element.
+    /// All formulas as one `math` element, with broken lines.
     pub mathml: String,
     /// The same formulas in LaTeX, for use with amsmath.
     pub latex: String,
+    /// The meanings of the names that these formulas are the first to use.
+    pub names: Vec<DisplayedEquation>,
+    /// The formulas one by one, which a page may break where it wants to.
+    pub equations: Vec<DisplayedEquation>,
+}
+
+impl Display {
+    fn of(displayed: Displayed, latex: String) -> Display {
+        let Displayed { table, names, equations } = displayed;
+        Display { mathml: table, latex, names, equations }
+    }
 }
 
 /// Formulas under a heading.
@@ -48,8 +59,8 @@ pub struct DisplayedEquations {
     pub name: String,
     /// Its parts.
     pub parts: Vec<DisplayedPart>,
-    /// All equations in plain text and LaTeX, in place of the parts, if they are written body by body.
-    pub plain: Option<Display>,
+    /// All equations in plain text and in LaTeX, in place of the parts, if they are written body by body.
+    pub plain: Option<(String, String)>,
     /// The cost of a right-hand side, line by line.
     pub operations: Vec<String>,
 }
@@ -62,7 +73,7 @@ pub struct DisplayedTheory {
     /// The heading.
     pub title: &'static str,
     /// The meanings of the names in the formulas of the part.
-    pub names: Option<String>,
+    pub names: Vec<DisplayedEquation>,
     /// Its contents.
     pub entries: Vec<DisplayedEntry>,
     /// All formulas of the part in LaTeX.
@@ -74,8 +85,8 @@ pub struct DisplayedTheory {
 pub struct DisplayedEntry {
     /// Its name.
     pub name: Option<String>,
-    /// A `math` element, if there are formulas.
-    pub mathml: Option<String>,
+    /// Its formulas, if there are any.
+    pub formulas: Vec<DisplayedEquation>,
     /// The verdict on the formulas, in words: proved, disproved or open.
     pub verdict: Option<String>,
     /// Names with their numerical values.
@@ -143,7 +154,7 @@ pub fn displayed_system(assembly: &Assembly<'_>, layout: &Layout) -> Result<Vec<
         .zip(latex)
         .map(|((part, mathml), (_, latex))| DisplayedPart {
             title: part.heading.text(),
-            display: mathml.zip(latex).map(|(mathml, latex)| Display { mathml, latex }),
+            display: mathml.zip(latex).map(|(displayed, latex)| Display::of(displayed, latex)),
             notes: if part.heading == Heading::Brackets { algebra(&brackets) } else { Vec::new() },
         })
         .collect();
@@ -207,7 +218,7 @@ pub fn displayed_equations(
     let system = derived.equations.system();
     if form == Form::Poincare && system.large_tree().is_some() {
         let print = |kind| page(form, kind, layout, title, assembly);
-        let whole = Display { mathml: print(Page::Text)?, latex: print(Page::Latex)? };
+        let whole = (print(Page::Text)?, print(Page::Latex)?);
         let name = name.to_owned();
         return Ok(DisplayedEquations {
             name,
@@ -224,7 +235,7 @@ pub fn displayed_equations(
     let displayed = mathml.into_iter().zip(latex::displays(operators, layout, &parts));
     let parts = displayed.map(|((part, mathml), (_, latex))| DisplayedPart {
         title: part.heading.text(),
-        display: mathml.zip(latex).map(|(mathml, latex)| Display { mathml, latex }),
+        display: mathml.zip(latex).map(|(displayed, latex)| Display::of(displayed, latex)),
         notes: notes(&sheet, part),
     });
     let mut lines = operations.lines();
@@ -264,10 +275,12 @@ pub fn displayed_theory<'g>(
     options: &TheoryOptions,
 ) -> Result<Vec<DisplayedTheory>, ModelError> {
     let found = Theory::of(model, assembly, options)?;
-    let set = |formulas: &[(Side<'g>, Side<'g>)]| {
-        let row = |(left, right): &(Side<'g>, Side<'g>)| mathml::row(&left.mathml, &right.mathml);
-        let rows: Vec<String> = formulas.iter().map(row).collect();
-        (!rows.is_empty()).then(|| mathml::table(&rows))
+    let set = |formulas: &[(Side<'g>, Side<'g>)]| -> Vec<DisplayedEquation> {
+        let equation = |(left, right): &(Side<'g>, Side<'g>)| DisplayedEquation {
+            left: left.mathml.clone(),
+            right: right.mathml.clone(),
+        };
+        formulas.iter().map(equation).collect()
     };
     let section = |section: &Section<'g>| DisplayedTheory {
         key: section.key,
@@ -279,7 +292,7 @@ pub fn displayed_theory<'g>(
             .iter()
             .map(|entry| DisplayedEntry {
                 name: entry.name.clone(),
-                mathml: set(&entry.formulas),
+                formulas: set(&entry.formulas),
                 verdict: entry.verdict.map(|(subject, verdict)| match subject {
                     None => verdict.in_words(),
                     Some(subject) => format!("{subject} {}", verdict.in_words()),

@@ -12,17 +12,26 @@ const LONGEST: usize = 120_000;
 /// Poincaré's equations, followed by the other forms.
 pub(super) fn equations(title: &str, assembly: &Assembly<'_>, layout: &Layout) -> Result<String, ModelError> {
     let first = displayed_equations(Form::Poincare, layout, title, assembly)?;
-    let mut shown = form(&first, Form::Poincare);
-    let mut refused = Vec::new();
+    let (mut shown, mut long, mut refused) = (String::new(), Vec::new(), Vec::new());
+    let mut show = |equations: &DisplayedEquations, form: Form| match self::form(equations) {
+        Some(whole) => shown += &whole,
+        None => long.push(format!("{} (pc derive --form {})", equations.name, form.name())),
+    };
+    show(&first, Form::Poincare);
     for other in others(assembly) {
         match displayed_equations(other, layout, title, assembly) {
-            Ok(equations) => shown += &form(&equations, other),
+            Ok(equations) => show(&equations, other),
             // An exhausted limit ends the work; a form that the model does not have is left out.
             Err(error) => match assembly.within_limits() {
                 Err(limit) => return Err(limit),
                 Ok(()) => refused.push(format!("{}: {error}", other.name())),
             },
         }
+    }
+    if !long.is_empty() {
+        let all = long.join(", ");
+        shown += "<h3>Longer forms</h3>\n";
+        shown += &paragraph(&format!("Too long to be shown here, but printed by the program: {all}."));
     }
     if !refused.is_empty() {
         shown += "<h3>Forms that do not apply</h3>\n";
@@ -55,34 +64,24 @@ fn others(assembly: &Assembly<'_>) -> Vec<Form> {
     forms
 }
 
-fn form(equations: &DisplayedEquations, form: Form) -> String {
-    let name = capitalised(&equations.name);
-    let mut shown = format!("<h3>{}</h3>\n", text(&name));
-    let size = |display: &pc_print::Display| display.mathml.len() + display.latex.len();
-    let sizes = equations.parts.iter().filter_map(|part| part.display.as_ref()).map(size);
-    let bytes: usize = sizes.sum();
-    if bytes > LONGEST {
-        return shown
-            + &paragraph(&format!(
-                "They are too long to be shown here; pc derive --form {} prints them.",
-                form.name()
-            ));
-    }
+/// The equations in one form, unless they are too long.
+fn form(equations: &DisplayedEquations) -> Option<String> {
+    let mut shown = format!("<h3>{}</h3>\n", text(&capitalised(&equations.name)));
     match &equations.plain {
-        Some(whole) if size(whole) > LONGEST => {
-            shown += &paragraph("They are too long to be shown here; pc derive prints them.");
-        }
-        Some(whole) => {
-            shown += &format!("<pre tabindex=\"0\">{}</pre>\n", lines(&whole.mathml));
-            shown += &formulas::source(&whole.latex);
+        Some((whole, latex)) => {
+            shown += &format!("<pre tabindex=\"0\">{}</pre>\n", lines(whole));
+            shown += &formulas::source(latex);
         }
         None => shown += &formulas::parts(&equations.parts, 4),
+    }
+    if shown.len() > LONGEST {
+        return None;
     }
     if !equations.operations.is_empty() {
         shown += "<h4>Operations of one right-hand side</h4>\n";
         shown += &equations.operations.iter().map(|line| paragraph(line)).collect::<String>();
     }
-    shown
+    Some(shown)
 }
 
 fn capitalised(name: &str) -> String {

@@ -1,33 +1,13 @@
 //! Formulas, each with its source for copying.
 
-use std::borrow::Cow;
-
 use pc_print::{Display, DisplayedPart};
 
 use crate::page::html::{lines, text};
+use crate::page::terms::{are_narrow, equations};
 
-/// The number of lines of a formula that are kept together: page breaks fall between such parts, and a part
-/// longer than a page would be cut.
-const LINES: usize = 10;
-
-/// A formula in a box that scrolls separately; browsers make such boxes accessible from the keyboard.
-pub(super) fn formula(mathml: &str) -> String {
-    format!("<div class=\"formula\">{}</div>\n", in_parts(mathml))
-}
-
-/// A long table of lines, divided into several tables.
-fn in_parts(mathml: &str) -> Cow<'_, str> {
-    let (Some(start), Some(end)) = (mathml.find("<mtr>"), mathml.rfind("</mtr>")) else {
-        return mathml.into();
-    };
-    let (head, lines, tail) =
-        (&mathml[..start], &mathml[start..end + "</mtr>".len()], &mathml[end + "</mtr>".len()..]);
-    let lines: Vec<&str> = lines.split_inclusive("</mtr>").collect();
-    if lines.len() <= LINES {
-        return mathml.into();
-    }
-    lines.chunks(LINES).map(|part| format!("{head}{}{tail}", part.concat())).collect::<String>().into()
-}
+/// What precedes the meanings of names.
+pub(super) const NAMES: &str =
+    "<p class=\"soft\">These names stand for expressions in the formulas below:</p>\n";
 
 /// The LaTeX source, hidden until it is opened.
 pub(super) fn source(latex: &str) -> String {
@@ -37,33 +17,44 @@ pub(super) fn source(latex: &str) -> String {
     )
 }
 
-/// Parts under headings of the given level.
+/// Parts under headings of the given level: short ones in pairs beside each other, where the page is wide.
 pub(super) fn parts(list: &[DisplayedPart], level: u8) -> String {
-    list.iter().map(|part| self::part(part, level)).collect()
+    let mut shown = String::new();
+    let mut single: Option<String> = None; // a short part that waits for another
+    for part in list {
+        let body = self::part(part, level);
+        if !is_narrow(part) {
+            shown += &single.take().unwrap_or_default();
+            shown += &body;
+        } else if let Some(first) = single.take() {
+            shown += &format!("<div class=\"pair\">\n{}{}</div>\n", of_two(&first), of_two(&body));
+        } else {
+            single = Some(body);
+        }
+    }
+    shown + &single.unwrap_or_default()
+}
+
+fn of_two(part: &str) -> String {
+    format!("<div>\n{part}</div>\n")
+}
+
+fn is_narrow(part: &DisplayedPart) -> bool {
+    part.display.as_ref().is_none_or(|display| are_narrow(&display.names) && are_narrow(&display.equations))
 }
 
 fn part(part: &DisplayedPart, level: u8) -> String {
     let DisplayedPart { title, display, notes } = part;
     let mut shown = format!("<h{level}>{title}</h{level}>\n");
-    if let Some(Display { mathml, latex }) = display {
-        shown += &formula(mathml);
+    if let Some(Display { names, equations: list, latex, .. }) = display {
+        if !names.is_empty() {
+            shown += NAMES;
+            shown += &equations(names);
+        }
+        if !list.is_empty() {
+            shown += &equations(list);
+        }
         shown += &source(latex);
     }
     shown + &notes.iter().map(|note| format!("<p class=\"soft\">{}</p>\n", text(note))).collect::<String>()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_long_table_is_divided() {
-        let table = |lines: std::ops::Range<usize>| {
-            let lines: String = lines.map(|i| format!("<mtr><mtd>{i}</mtd></mtr>")).collect();
-            format!("<math display=\"block\"><mtable>{lines}</mtable></math>")
-        };
-        assert_eq!(in_parts(&table(0..10)), table(0..10));
-        assert_eq!(in_parts(&table(0..30)), table(0..10) + &table(10..20) + &table(20..30));
-        assert_eq!(in_parts("<math><mi>x</mi></math>"), "<math><mi>x</mi></math>");
-    }
 }

@@ -1,6 +1,10 @@
 //! Elements of a page, and text whose markup characters are escaped.
 
-use pc_print::{one_line, visible};
+use pc_print::{one_line, visible, visible_json};
+use serde_json::Value;
+
+use crate::base64::base64;
+use crate::page::{player, plots};
 
 /// Text on one line, for use between elements or within quotation marks.
 pub(crate) fn text(text: &str) -> String {
@@ -66,15 +70,33 @@ pub(crate) fn described<L: AsRef<str>>(entries: &[(L, Vec<String>)]) -> String {
     )
 }
 
-/// A page without external resources; `style` is what some of its parts need beyond the style of all pages.
-pub(crate) fn page(title: &str, style: &str, body: &str) -> String {
+/// Data for a script: JSON that contains neither `</script>` nor the end of a CDATA section.
+pub(crate) fn data(value: &Value) -> String {
+    visible_json(value).replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
+}
+
+/// A page without external resources.
+pub(crate) fn page(title: &str, body: &str) -> String {
     let title = text(title);
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
-         <meta name=\"color-scheme\" content=\"light dark\"/>\n<title>{title}</title>\n<style>\n{}{style}</style>\n</head>\n\
+         <meta name=\"color-scheme\" content=\"light dark\"/>\n<title>{title}</title>\n<style>\n{}{}{}{}</style>\n</head>\n\
          <body>\n{body}</body>\n</html>\n",
-        include_str!("style.css")
+        include_str!("style.css"),
+        if body.contains("<math") { of_formulas() } else { String::new() },
+        if body.contains(plots::DATA) { include_str!("../../plots/dist/plots.css") } else { "" },
+        if body.contains(player::DATA) { include_str!("viewer.css") } else { "" }
+    )
+}
+
+/// The style of formulas, with their font: browsers without a mathematical font of their own would set roots
+/// and brackets in pieces that do not fit.
+fn of_formulas() -> String {
+    let font = base64(include_bytes!("../../fonts/STIXTwoMath-subset.woff2"));
+    format!(
+        "@font-face {{ font-family: \"pc formulas\"; src: url(data:font/woff2;base64,{font}) format(\"woff2\"); }}\n{}",
+        include_str!("formulas.css")
     )
 }
 

@@ -3,13 +3,11 @@
 //! The viewer is a script for WebGL, bundled from the modules in `viewer/src` with three.js by `npm ci && npm run build`
 //! in `viewer/`; the bundle is part of the page, which needs nothing from elsewhere.
 
-use pc_print::visible_json;
-
-use crate::page::html::{page, text};
+use crate::page::html::{data, page, text};
 use crate::scene::Scene;
 
-/// The style of the player, for pages that have one.
-pub(crate) const STYLE: &str = include_str!("viewer.css");
+/// The name of the data of the viewer.
+pub(super) const DATA: &str = "player-data";
 
 /// The viewer, with the licence of three.js at its head.
 const VIEWER: &str = include_str!("../../viewer/dist/viewer.js");
@@ -31,7 +29,7 @@ pub fn animation(title: &str, scene: &Scene) -> String {
     let head = format!("<header><h1>{}</h1></header>\n", text(title));
     let body =
         format!("{head}<main class=\"alone\">\n{}</main>\n", written(scene, " data-alone=\"data-alone\""));
-    page(title, STYLE, &body)
+    page(title, &body)
 }
 
 /// The player as a part of a page, visible only where scripts run and there is WebGL.
@@ -41,9 +39,6 @@ pub(crate) fn player(scene: &Scene) -> String {
 
 /// The player with further attributes.
 fn written(scene: &Scene, attributes: &str) -> String {
-    // JSON escaped in this way contains neither `</script>` nor the end of a CDATA section.
-    let data =
-        visible_json(&scene.data()).replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026");
     format!(
         "<div class=\"player\" id=\"player\" hidden=\"hidden\"{attributes}>\n\
          <div class=\"stage\"><canvas tabindex=\"0\" role=\"img\" aria-label=\"The motion, drawn. Arrow keys turn the view, \
@@ -52,7 +47,8 @@ fn written(scene: &Scene, attributes: &str) -> String {
          <p class=\"soft\" id=\"player-excuse\" hidden=\"hidden\">The motion cannot be drawn here: this browser has no WebGL, \
          or does not allow it.</p>\n\
          <noscript><p class=\"soft\">The motion can be watched where scripts are allowed.</p></noscript>\n\
-         <script type=\"application/json\" id=\"player-data\">{data}</script>\n\
-         <script>/*<![CDATA[*/\n{VIEWER}/*]]>*/</script>\n"
+         <script type=\"application/json\" id=\"{DATA}\">{}</script>\n\
+         <script>/*<![CDATA[*/\n{VIEWER}/*]]>*/</script>\n",
+        data(&scene.data())
     )
 }

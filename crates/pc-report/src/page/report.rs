@@ -31,37 +31,34 @@ pub fn report(
     let check = Check::new(model, assembly, &equations)?;
     let found = displayed_theory(model, assembly, &TheoryOptions::default())?;
     let layout = Layout { width: WIDTH, ..Layout::default() };
-    let mut parts = vec![
-        Part::new(
-            "system",
-            "Frame and Lagrangian",
-            formulas::parts(&displayed_system(assembly, &layout)?, 3),
-        ),
-        Part::new(
-            "equations",
-            "Equations of motion",
-            equations::equations(model.title(), assembly, &layout)?,
-        ),
-        Part::new("theory", "Theory of the motions", theory::theory(&found)),
-    ];
-    let mut style = "";
-    if let Some(record) = motion {
-        let scene = Scene::of(model, assembly, record)?;
-        let mut watched = String::new();
-        if let Some(scene) = &scene {
-            (watched, style) = (player::player(scene), player::STYLE);
-        }
-        let shown = motion::motion(record, &pairs(assembly, record));
-        parts.push(Part::new("motion", "Motion", watched + &shown));
-    }
-    parts.push(Part::new("text", "Text of the model", written(model)));
+    let formulas = equations::equations(model.title(), assembly, &layout)?;
+    let system = formulas::parts(&displayed_system(assembly, &layout)?, 3);
+    let moved = motion.map(|record| moved(model, assembly, record)).transpose()?;
     let second = match verify(model, assembly, &Options::default()) {
         Err(error @ VerifyError::Disagreement(_)) => return Err(ReportError::Verify(Box::new(error))),
         outcome => outcome,
     };
     assembly.within_limits()?;
-    parts.insert(0, Part::new("verdicts", "Verdicts", described(&check.compared(second).entries())));
-    Ok(page(model.title(), style, &(head(model, &parts) + &body(&parts))))
+    let mut parts = vec![
+        Part::new("equations", "Equations of motion", formulas),
+        Part::new("verdicts", "Verdicts", described(&check.compared(second).entries())),
+        Part::new("system", "Frame and Lagrangian", system),
+        Part::new("theory", "Theory of the motions", theory::theory(&found)),
+        Part::new("text", "Text of the model", written(model)),
+    ];
+    if let (Some(moved), Some(record)) = (moved, motion) {
+        // A motion is seen at a glance; why there is none is not what the page is about.
+        let place = if record.curves().times.is_empty() { parts.len() - 1 } else { 0 };
+        parts.insert(place, Part::new("motion", "Motion", moved));
+    }
+    Ok(page(model.title(), &(head(model, &parts) + &body(&parts))))
+}
+
+/// The motion: the player, and the plots.
+fn moved(model: &Model, assembly: &Assembly<'_>, record: &Recording) -> Result<String, ReportError> {
+    let scene = Scene::of(model, assembly, record)?;
+    let watched = scene.as_ref().map_or_else(String::new, player::player);
+    Ok(watched + &motion::motion(record, &pairs(assembly, record)))
 }
 
 fn body(parts: &[Part]) -> String {

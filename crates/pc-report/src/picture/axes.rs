@@ -18,6 +18,11 @@ impl Axis {
         Axis { low, high, from, to }
     }
 
+    /// The lowest and the highest value, and the points that represent them.
+    pub(crate) fn ends(&self) -> [f64; 4] {
+        [self.low, self.high, self.from, self.to]
+    }
+
     /// The point that represents a value.
     pub(crate) fn place(&self, value: f64) -> f64 {
         self.from + (value - self.low) / (self.high - self.low) * (self.to - self.from)

@@ -24,12 +24,7 @@ const COLOURS: [[u8; 3]; 9] = [
 
 /// A panel as an element of a page, with a description, and with texts in the size used on the page.
 pub(crate) fn figure(panel: &Panel, most: usize, id: &str) -> String {
-    const WIDTH: f64 = 480.0;
-    const SIZE: f64 = 13.0;
-    let (height, top) = if panel.is_portrait() { (420.0, 26.0) } else { (250.0, 8.0) };
-    let mut drawing = Drawing { width: WIDTH, height, ..Drawing::default() };
-    let margin = panel.margin(height - top - 38.0, SIZE).max(48.0);
-    let frame = Frame { left: margin, right: WIDTH - 12.0, top, bottom: height - 38.0 };
+    let (mut drawing, frame) = blank(panel);
     panel.draw(&mut drawing, frame, SIZE, most);
     let (span, values) = (panel.span_in_words(), panel.values_in_words());
     let over = match panel.across.0.as_str() {
@@ -40,6 +35,24 @@ pub(crate) fn figure(panel: &Panel, most: usize, id: &str) -> String {
     let described =
         format!("{names}: {over} from {} to {}; values from {} to {}", span.0, span.1, values.0, values.1);
     drawing.inline(id, &panel.title, &described)
+}
+
+/// The ends of the axes of such an element: on each, the lowest and the highest value, and their places.
+pub(crate) fn ends(panel: &Panel) -> [[f64; 4]; 2] {
+    let (across, up) = blank(panel).1.axes(panel);
+    [across.ends(), up.ends()]
+}
+
+/// The size of texts on a page.
+const SIZE: f64 = 13.0;
+
+/// A drawing for a page without contents, and its axes.
+fn blank(panel: &Panel) -> (Drawing, Frame) {
+    const WIDTH: f64 = 480.0;
+    let (height, top) = if panel.is_portrait() { (420.0, 26.0) } else { (250.0, 8.0) };
+    let margin = panel.margin(height - top - 38.0, SIZE).max(48.0);
+    let frame = Frame { left: margin, right: WIDTH - 12.0, top, bottom: height - 38.0 };
+    (Drawing { width: WIDTH, height, ..Drawing::default() }, frame)
 }
 
 /// The area within the axes.

@@ -111,6 +111,16 @@ pub(crate) fn of_kind(record: &Recording, columns: &Columns, wrapped: &[String])
     }
 }
 
+/// The panel of columns that belong together, over time.
+pub(crate) fn together(record: &Recording, kind: ColumnKind, list: &[(String, Vec<f64>)]) -> Panel {
+    let times = &record.curves().times;
+    let curve = |(name, values): &(String, Vec<f64>)| Curve {
+        name: one_line(name).into_owned(),
+        points: times.iter().copied().zip(values.iter().copied()).collect(),
+    };
+    over_time(record, title(kind), Scale::Linear, list.iter().map(curve).collect())
+}
+
 fn by_scale(record: &Recording, title: &str, list: &[(String, Vec<f64>)], wrapped: &[String]) -> Vec<Panel> {
     let (angles, others): (Vec<_>, Vec<_>) = list.iter().partition(|(name, _)| wrapped.contains(name));
     let times = &record.curves().times;

@@ -15,8 +15,14 @@ window.addEventListener("load", function () {
       frames = FRAMES.map(function (n) { player.player.show(n); return player.player.frame(); });
       painted = player.player.pixels();
     }
+    var plots = Array.from(document.querySelectorAll(".live .uplot"));
+    document.dispatchEvent(new CustomEvent("pc:time", { detail: 0.5 }));
+    var marked = plots.filter(function (p) { return box(p).height > 200 && !p.querySelector(".now").hidden; });
+    // A piece of an equation that is wider than the page.
+    var cut = Array.from(document.querySelectorAll(".formula")).filter(function (f) { return f.scrollWidth > f.clientWidth + 1; });
     // Pictures on buttons are small.
-    var small = Array.from(document.querySelectorAll("svg:not([aria-hidden])")).filter(function (s) { return box(s).width < 100 || box(s).height < 50; });
+    var pictures = Array.from(document.querySelectorAll("svg:not([aria-hidden])")).filter(function (s) { return !s.closest(".live"); });
+    var small = pictures.filter(function (s) { return box(s).width < 100 || box(s).height < 50; });
     parent.postMessage(JSON.stringify({
       wrong: window.wrong,
       width: window.innerWidth,
@@ -30,6 +36,10 @@ window.addEventListener("load", function () {
       fractions: fractions.length,
       lying: lying.map(function (f) { return f.textContent.slice(0, 60); }),
       small: small.length,
+      font: Array.from(document.fonts).some(function (f) { return f.status === "loaded"; }),
+      cut: cut.map(function (f) { return f.textContent.slice(0, 60); }),
+      plots: plots.length,
+      marked: marked.length,
       requests: performance.getEntriesByType("resource").map(function (e) { return e.name; }),
       frames: frames,
       painted: painted
