@@ -34,6 +34,16 @@ export class Clock {
     this.now = this.times[this.still];
   }
 
+  // Goes to a time, or to the end that is nearest.
+  seek(time) {
+    const isBefore = (n) => (this.times[n] - time) * this.direction <= 0;
+    this.show(0);
+    while (this.still < this.last && isBefore(this.still + 1)) {
+      this.still++;
+    }
+    this.now = this.still === this.last || !isBefore(0) ? this.times[this.still] : time;
+  }
+
   // The number of stills before now, with a fraction.
   position() {
     const { times, still, last } = this;

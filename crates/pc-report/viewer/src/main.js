@@ -17,6 +17,7 @@ import { ScaleBar } from "./scalebar.js";
 import { Shapes } from "./shapes/shapes.js";
 import { Stage } from "./stage.js";
 import { Theme } from "./theme.js";
+import { onSeek, tell } from "./time.js";
 import { Trails } from "./trails.js";
 
 // A longer time between two pictures is not made up for.
@@ -120,6 +121,13 @@ class Viewer {
       this.draw();
     }).observe(this.box);
     canvas.addEventListener("webglcontextrestored", actions.changed);
+    onSeek((time) => {
+      this.clock.isPlaying = false;
+      this.clock.seek(time);
+      actions.changed();
+    });
+    // What comes later on the page listens by then.
+    window.addEventListener("load", () => tell(this.clock.now));
   }
 
   // Looks from a direction at all there is.
@@ -197,6 +205,10 @@ class Viewer {
     this.labels.update(pose.numbers, (point) => viewpoint.seen(point, size), size);
     this.scaleBar.update(size.height / (2 * viewpoint.halfHeight()), size.width);
     this.compass.update(directions);
+    if (this.told !== clock.now) {
+      this.told = clock.now;
+      tell(clock.now);
+    }
     this.controls.update({ loop: clock.loops, trails: this.showsTrails, flat: viewpoint.isFlat });
   }
 

@@ -41,3 +41,14 @@ test("time may run backwards, and may not run at all", () => {
   one.start();
   assert.deepEqual([one.position(), one.isPlaying], [0, false]);
 });
+
+test("a time is gone to between two stills, and not beyond the ends", () => {
+  const clock = new Clock(Float32Array.from([0, 1, 2, 4]));
+  for (const [time, still, now] of [[1.5, 1, 1.5], [3, 2, 3], [0, 0, 0], [9, 3, 4], [-1, 0, 0]]) {
+    clock.seek(time);
+    assert.deepEqual([clock.still, clock.now], [still, now]);
+  }
+  const back = new Clock(Float32Array.from([0, -1, -2]));
+  back.seek(-1.5);
+  assert.deepEqual([back.still, back.now, back.position()], [1, -1.5, 1.5]);
+});
