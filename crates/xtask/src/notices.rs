@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::command::{cargo, text_of};
+use crate::command::{cargo, text_of, workspace_root};
 use crate::error::Error;
 
 /// How files with licences begin, in lower case.
@@ -12,6 +12,14 @@ const BEGINNINGS: [&str; 6] = ["license", "licence", "copying", "copyright", "no
 
 /// The folder of a crate in which the library that it builds is kept, such as SUNDIALS.
 const VENDORED: &str = "vendor";
+
+/// The crate whose pages contain work of others, and the licences of that.
+const PAGES: &str = "pc-report";
+const ON_PAGES: [(&str, &str); 3] = [
+    ("three.js, in pages", "crates/pc-report/viewer/dist/viewer.LICENSE.txt"),
+    ("uPlot, in pages", "crates/pc-report/plots/dist/plots.LICENSE.txt"),
+    ("STIX Two Math, in pages", "crates/pc-report/fonts/OFL.txt"),
+];
 
 /// The licences and notices of all crates from registries that a package of the workspace links, each text once, with the crates
 /// that it belongs to.
@@ -21,7 +29,16 @@ const VENDORED: &str = "vendor";
 pub(crate) fn of_dependencies(package: &str) -> Result<String, Error> {
     let places = places()?;
     let mut crates_of_text: BTreeMap<String, Vec<String>> = BTreeMap::new();
-    for (name, declared) in dependencies(package)? {
+    let listed = listed(package)?;
+    if listed.lines().any(|line| line.starts_with(&format!("{PAGES} "))) {
+        for (name, path) in ON_PAGES {
+            let path = workspace_root().join(path);
+            let text = fs::read_to_string(&path)
+                .map_err(|source| Error::File { path: path.display().to_string(), source })?;
+            crates_of_text.entry(text).or_default().push(name.to_owned());
+        }
+    }
+    for (name, declared) in from_registries(&listed) {
         let missing = || Error::Package { wrong: format!("the sources of {name} are not where cargo says") };
         let place = places.get(&name).ok_or_else(missing)?;
         let mut texts = texts_in(place)?;
@@ -46,18 +63,22 @@ pub(crate) fn of_dependencies(package: &str) -> Result<String, Error> {
         .collect())
 }
 
-/// The crates from registries that a package links, `name-version`, in order, with the licences that they declare.
-fn dependencies(package: &str) -> Result<BTreeMap<String, String>, Error> {
+/// The crates that a package links, a line each: name, version and place, then the licence.
+fn listed(package: &str) -> Result<String, Error> {
     let tree = ["tree", "--locked", "--package", package, "--edges", "normal,no-proc-macro"];
     let mut command = cargo(&tree);
-    let listed = text_of(command.args(["--prefix", "none", "--no-dedupe", "--format", "{p}|{l}"]))?;
+    text_of(command.args(["--prefix", "none", "--no-dedupe", "--format", "{p}|{l}"]))
+}
+
+/// Those that are from registries, `name-version`, in order, with the licences that they declare.
+fn from_registries(listed: &str) -> BTreeMap<String, String> {
     let from_registry = |line: &str| {
         let (package, licence) = line.split_once('|')?;
         let mut words = package.split(' ');
         let (name, version) = (words.next()?, words.next()?.strip_prefix('v')?);
         words.next().is_none().then(|| (format!("{name}-{version}"), licence.to_owned()))
     };
-    Ok(listed.lines().filter_map(from_registry).collect())
+    listed.lines().filter_map(from_registry).collect()
 }
 
 /// The directories of all crates of the workspace's dependencies, by their names.
@@ -95,5 +116,9 @@ mod tests {
             notices.contains("\nnumpy-") && !notices.contains("pc-expr"),
             "crates of others, and no other ones"
         );
+        for (name, _) in ON_PAGES {
+            assert!(notices.contains(name), "{name}");
+        }
+        assert!(notices.contains("three.js authors") && notices.contains("SIL OPEN FONT LICENSE"));
     }
 }
