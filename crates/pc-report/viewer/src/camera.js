@@ -11,8 +11,8 @@ const STEEPEST = Math.PI / 2;
 const [NEAREST, FARTHEST] = [0.02, 400];
 // A fitted view is not closer, where there is only a point that does not move.
 const CLOSEST = 1.5;
-// How far behind the target there is something to see, in units of the model.
-const DEPTH = 60;
+// How far behind the target there is something to see, in units of the distance, and of the model at least.
+const [DEPTH, LEAST_DEPTH] = [25, 60];
 const SECONDS = 0.45;
 
 // Angles of the views along the axes.
@@ -58,18 +58,19 @@ export class Viewpoint {
   update() {
     const { right, up, back } = this.directions();
     const target = this.target;
+    const depth = Math.max(DEPTH * this.distance, LEAST_DEPTH);
     for (const camera of [this.perspective, this.flat]) {
       camera.position.copy(back).multiplyScalar(this.distance).add(target);
       camera.matrixAutoUpdate = false;
       camera.matrix.makeBasis(right, up, back).setPosition(camera.position);
       camera.matrix.decompose(camera.position, camera.quaternion, camera.scale);
-      camera.far = this.distance + DEPTH;
+      camera.far = this.distance + depth;
     }
     this.perspective.near = this.distance / 40;
     this.perspective.aspect = this.aspect;
     const half = this.halfHeight();
     const width = half * this.aspect;
-    Object.assign(this.flat, { left: -width, right: width, top: half, bottom: -half, near: this.distance - DEPTH });
+    Object.assign(this.flat, { left: -width, right: width, top: half, bottom: -half, near: this.distance - depth });
     this.perspective.updateProjectionMatrix();
     this.flat.updateProjectionMatrix();
     this.camera.updateMatrixWorld(true);
@@ -138,16 +139,14 @@ export class Viewpoint {
     }
     const middle = low.map((x, k) => (x + high[k]) / 2);
     const room = [FILLED * HALF * this.aspect, FILLED * HALF];
-    const needed = (depth) => {
-      let distance = NEAREST;
-      for (const [x, y, z, radius] of places) {
-        const nearer = this.isFlat ? 0 : z - middle[2] + depth * radius;
-        const across = [Math.abs(x - middle[0]) + radius, Math.abs(y - middle[1]) + radius];
-        distance = Math.max(distance, nearer + across[0] / room[0], nearer + across[1] / room[1]);
-      }
-      return distance;
-    };
-    const distance = clamp(needed(1), CLOSEST, FARTHEST);
+    let distance = CLOSEST;
+    for (const [x, y, z, radius] of places) {
+      // Of what is nearer to the eye, less fits into the picture.
+      const nearer = this.isFlat ? 0 : z - middle[2] + radius;
+      const across = [Math.abs(x - middle[0]) + radius, Math.abs(y - middle[1]) + radius];
+      distance = Math.max(distance, nearer + across[0] / room[0], nearer + across[1] / room[1]);
+    }
+    distance = Math.min(distance, FARTHEST);
     const offset = new Vector3();
     axes.forEach((axis, k) => offset.addScaledVector(axis, middle[k]));
     return { offset, distance };

@@ -65,7 +65,6 @@ export class Controls {
     this.output.textContent = `${time} / ${this.end}`;
     this.slider.value = clock.still;
     this.slider.setAttribute("aria-valuetext", `t = ${time}`);
-    this.slider.style.setProperty("--part", clock.last > 0 ? clock.position() / clock.last : 0);
     for (const [action, isPressed] of Object.entries(pressed)) {
       this.find(action).setAttribute("aria-pressed", String(isPressed));
     }

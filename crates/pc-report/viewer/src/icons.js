@@ -15,7 +15,7 @@ const ICONS = {
   full: { strokes: "M14 4h6v6M20 4l-7 7M10 20H4v-6M4 20l7-7" },
 };
 
-export function icon(name) {
+function icon(name) {
   const svg = drawn("svg", { class: "icon", viewBox: "0 0 24 24", "aria-hidden": "true" });
   const { strokes, areas } = ICONS[name];
   if (strokes) {
