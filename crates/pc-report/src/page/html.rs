@@ -4,7 +4,6 @@ use pc_print::{one_line, visible, visible_json};
 use serde_json::Value;
 
 use crate::base64::base64;
-use crate::page::plots::DATA;
 
 /// Text on one line, for use between elements or within quotation marks.
 pub(crate) fn text(text: &str) -> String {
@@ -75,6 +74,9 @@ pub(crate) fn data(value: &Value) -> String {
     visible_json(value).replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
 }
 
+/// The id of the data of plots, by which their script finds them.
+pub(super) const PLOTS: &str = "plots-data";
+
 /// A page without external resources.
 pub(crate) fn page(title: &str, body: &str) -> String {
     let title = text(title);
@@ -85,7 +87,7 @@ pub(crate) fn page(title: &str, body: &str) -> String {
          <body>\n{body}</body>\n</html>\n",
         include_str!("style.css"),
         if body.contains("<math") { of_formulas() } else { String::new() },
-        if body.contains(DATA) { include_str!("../../plots/dist/plots.css") } else { "" }
+        if body.contains(PLOTS) { include_str!("../../plots/dist/plots.css") } else { "" }
     )
 }
 
