@@ -161,7 +161,7 @@ export function draw(chart, figure) {
     {
       width: figure.clientWidth,
       height: HEIGHT,
-      padding: [10, 10, 0, 0],
+      padding: [10, 18, 0, 0],
       series: [{ label: "t", value: (_plot, number) => name(value)(number ?? null) }, ...series],
       scales: { x: { time: false }, y: { range: decades ? wholeDecades : roomy } },
       axes: [

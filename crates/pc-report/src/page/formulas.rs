@@ -1,13 +1,19 @@
 //! Formulas, each with its source for copying.
 
-use pc_print::{Display, DisplayedPart};
+use pc_print::{Display, DisplayedEquation, DisplayedPart};
 
 use crate::page::html::{lines, text};
 use crate::page::terms::{are_narrow, equations};
 
-/// What precedes the meanings of names.
-pub(super) const NAMES: &str =
-    "<p class=\"soft\">These names stand for expressions in the formulas below:</p>\n";
+/// The meanings of names, with what precedes them.
+pub(super) fn meanings(names: &[DisplayedEquation]) -> String {
+    let sentence = match names {
+        [] => return String::new(),
+        [_] => "This name stands for an expression in the formulas below:",
+        _ => "These names stand for expressions in the formulas below:",
+    };
+    format!("<p class=\"soft\">{sentence}</p>\n{}", equations(names))
+}
 
 /// The LaTeX source, hidden until it is opened.
 pub(super) fn source(latex: &str) -> String {
@@ -47,10 +53,7 @@ fn part(part: &DisplayedPart, level: u8) -> String {
     let DisplayedPart { title, display, notes } = part;
     let mut shown = format!("<h{level}>{title}</h{level}>\n");
     if let Some(Display { names, equations: list, latex, .. }) = display {
-        if !names.is_empty() {
-            shown += NAMES;
-            shown += &equations(names);
-        }
+        shown += &meanings(names);
         if !list.is_empty() {
             shown += &equations(list);
         }

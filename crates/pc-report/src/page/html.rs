@@ -4,7 +4,6 @@ use pc_print::{one_line, visible, visible_json};
 use serde_json::Value;
 
 use crate::base64::base64;
-use crate::page::{player, plots};
 
 /// Text on one line, for use between elements or within quotation marks.
 pub(crate) fn text(text: &str) -> String {
@@ -75,6 +74,10 @@ pub(crate) fn data(value: &Value) -> String {
     visible_json(value).replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
 }
 
+/// The ids of the data of plots and of the player, by which their scripts find them.
+pub(super) const PLOTS: &str = "plots-data";
+pub(super) const PLAYER: &str = "player-data";
+
 /// A page without external resources.
 pub(crate) fn page(title: &str, body: &str) -> String {
     let title = text(title);
@@ -85,8 +88,8 @@ pub(crate) fn page(title: &str, body: &str) -> String {
          <body>\n{body}</body>\n</html>\n",
         include_str!("style.css"),
         if body.contains("<math") { of_formulas() } else { String::new() },
-        if body.contains(plots::DATA) { include_str!("../../plots/dist/plots.css") } else { "" },
-        if body.contains(player::DATA) { include_str!("viewer.css") } else { "" }
+        if body.contains(PLOTS) { include_str!("../../plots/dist/plots.css") } else { "" },
+        if body.contains(PLAYER) { include_str!("viewer.css") } else { "" }
     )
 }
 

@@ -16,10 +16,8 @@ const MOST_POINTS: usize = 1500;
 /// Charts ordered by kind, followed by charts of the most informative pairs of columns, one column plotted
 /// against the other, and then the summary.
 pub(super) fn motion(record: &Recording, pairs: &[(String, String)]) -> String {
+    let remark = record.remark.as_ref().map_or_else(String::new, |remark| paragraph(remark));
     let mut shown = String::new();
-    if let Some(remark) = &record.remark {
-        shown += &paragraph(remark);
-    }
     let mut plots = Plots::default();
     let mut number = 0;
     let mut charts = |heading: &str, panels: &[Panel]| {
@@ -55,7 +53,7 @@ pub(super) fn motion(record: &Recording, pairs: &[(String, String)]) -> String {
         shown += "<h3>The run</h3>\n";
         shown += &described(&record.summary);
     }
-    shown + &plots.script()
+    format!("{remark}{}{shown}{}", plots.help(), plots.script())
 }
 
 /// The panels of columns of one kind: vectors, each by itself, and the others by their scales.

@@ -3,11 +3,8 @@
 //! The viewer is a script for WebGL, bundled from the modules in `viewer/src` with three.js by `npm ci && npm run build`
 //! in `viewer/`; the bundle is part of the page, which needs nothing from elsewhere.
 
-use crate::page::html::{data, page, text};
+use crate::page::html::{PLAYER, data, page, text};
 use crate::scene::Scene;
-
-/// The name of the data of the viewer.
-pub(super) const DATA: &str = "player-data";
 
 /// The viewer, with the licence of three.js at its head.
 const VIEWER: &str = include_str!("../../viewer/dist/viewer.js");
@@ -47,7 +44,7 @@ fn written(scene: &Scene, attributes: &str) -> String {
          <p class=\"soft\" id=\"player-excuse\" hidden=\"hidden\">The motion cannot be drawn here: this browser has no WebGL, \
          or does not allow it.</p>\n\
          <noscript><p class=\"soft\">The motion can be watched where scripts are allowed.</p></noscript>\n\
-         <script type=\"application/json\" id=\"{DATA}\">{}</script>\n\
+         <script type=\"application/json\" id=\"{PLAYER}\">{}</script>\n\
          <script>/*<![CDATA[*/\n{VIEWER}/*]]>*/</script>\n",
         data(&scene.data())
     )

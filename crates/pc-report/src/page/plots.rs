@@ -3,14 +3,12 @@
 use serde_json::{Value, json};
 
 use crate::base64;
-use crate::page::html::data;
+use crate::page::html::{PLOTS, data};
 use crate::picture::chart::ends;
 use crate::picture::{Content, Curve, Panel, Scale};
 
 /// The largest number of values in the plots of a page, which take up a fifth of a megabyte.
 const MOST_NUMBERS: usize = 36_000;
-/// The id of the data, by which the script finds them.
-pub(super) const DATA: &str = "plots-data";
 
 /// The panels of a page, with the ids of their figures.
 #[derive(Default)]
@@ -23,15 +21,26 @@ impl Plots {
         self.panels.push((id.to_owned(), panel.clone()));
     }
 
-    /// What readers are told, the data, and the script; nothing if there are no plots.
+    fn is_empty(&self) -> bool {
+        self.panels.iter().all(|(_, panel)| panel.is_portrait())
+    }
+
+    /// What readers are told once the script runs.
+    pub(super) fn help(&self) -> &'static str {
+        if self.is_empty() {
+            return "";
+        }
+        "<p class=\"soft\" id=\"plots-help\" hidden=\"hidden\">Drag across a plot to see a part of the time, click twice to see all \
+         of it. A click goes to a time; names hide their curves.</p>\n"
+    }
+
+    /// The data and the script; nothing if there are no plots.
     pub(super) fn script(&self) -> String {
-        if self.panels.iter().all(|(_, panel)| panel.is_portrait()) {
+        if self.is_empty() {
             return String::new();
         }
         format!(
-            "<p class=\"soft\" id=\"plots-help\" hidden=\"hidden\">Drag across a plot to see a part of the time, click twice to see \
-             all of it. A click goes to a time; names hide their curves.</p>\n\
-             <script type=\"application/json\" id=\"{DATA}\">{}</script>\n\
+            "<script type=\"application/json\" id=\"{PLOTS}\">{}</script>\n\
              <script>/*<![CDATA[*/\n{}/*]]>*/</script>\n",
             data(&self.data()),
             include_str!("../../plots/dist/plots.js")

@@ -12,10 +12,22 @@ const WIDE: f64 = 30.0;
 const LONG_LEFT: f64 = 24.0;
 /// Equations wider than this need the whole width of a page.
 const HALF: f64 = 50.0;
+/// A list of this many equations is long.
+const MANY: usize = 8;
 
-/// Equations one below the other, in a box that scrolls separately if a piece does not fit; browsers make
-/// such boxes accessible from the keyboard.
+/// Equations one below the other; a long list of short ones is divided into two that stand beside each other
+/// where the page is wide.
 pub(super) fn equations(list: &[DisplayedEquation]) -> String {
+    if list.len() < MANY || !are_narrow(list) {
+        return column(list);
+    }
+    let (first, second) = list.split_at(list.len().div_ceil(2));
+    format!("<div class=\"pair\">\n{}{}</div>\n", column(first), column(second))
+}
+
+/// Equations in a box that scrolls separately if a piece does not fit; browsers make such boxes accessible from
+/// the keyboard.
+fn column(list: &[DisplayedEquation]) -> String {
     format!("<div class=\"formula\">\n{}</div>\n", list.iter().map(equation).collect::<String>())
 }
 
@@ -310,6 +322,16 @@ mod tests {
             ["<mrow><mi>a</mi></mrow>", "", "(", ""]
         );
         assert_eq!(list.iter().map(|e| e.whole).collect::<String>(), row);
+    }
+
+    #[test]
+    fn a_long_list_is_divided() {
+        let short = DisplayedEquation { left: "<mi>x</mi>".to_owned(), right: "<mi>y</mi>".to_owned() };
+        let boxes = |list: &[DisplayedEquation]| equations(list).matches("class=\"formula\"").count();
+        let lists = [7, 9].map(|count| vec![short.clone(); count]);
+        assert_eq!(lists.map(|list| boxes(&list)), [1, 2]);
+        let long = DisplayedEquation { left: short.left.clone(), right: sum(9) };
+        assert_eq!(boxes(&vec![long; 9]), 1);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use pc_print::{DisplayedEntry, DisplayedEquation, DisplayedTheory};
 
-use crate::page::formulas::{NAMES, source};
+use crate::page::formulas::{meanings, source};
 use crate::page::html::text;
 use crate::page::terms::equations;
 use crate::picture::plane;
@@ -29,14 +29,11 @@ struct Shown {
 impl Shown {
     fn part(&mut self, part: &DisplayedTheory) -> String {
         let mut shown = format!("<h3>{}</h3>\n", text(part.title));
-        if !part.names.is_empty() {
-            let names = equations(&part.names);
-            if names.len() > LONGEST {
-                self.unknown.extend(part.names.iter().map(|name| name.left.clone()));
-            } else {
-                shown += NAMES;
-                shown += &names;
-            }
+        let names = meanings(&part.names);
+        if names.len() > LONGEST {
+            self.unknown.extend(part.names.iter().map(|name| name.left.clone()));
+        } else {
+            shown += &names;
         }
         for (number, entry) in (1..).zip(&part.entries) {
             shown += &self.entry(entry, &format!("{}-{number}", part.key));
