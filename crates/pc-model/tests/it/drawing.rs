@@ -83,3 +83,13 @@ fn a_drawing_that_cannot_be_drawn_is_refused_with_its_text() {
         assert!(error.contains(said), "{draw}: {error}");
     }
 }
+
+#[test]
+fn all_models_are_drawn() {
+    for builtin in Builtin::all() {
+        let model = Model::new(builtin.document().unwrap());
+        let graph = Graph::new();
+        let assembly = model.assemble(&graph).unwrap();
+        assert!(!model.drawing(&assembly).unwrap().is_empty(), "{}", builtin.name);
+    }
+}
