@@ -156,6 +156,8 @@ impl Camera {
         } else {
             FILLED * width.min(1.1 * paper_height) / self.size * far / (far + depth)
         };
+        // In a plane depths are 0 or −0, and neither is before the other.
+        let depth = depth + 0.0;
         Seen { at: [width / 2.0 + u * scale, paper_height / 2.0 - height * scale], depth, scale }
     }
 }
@@ -177,6 +179,14 @@ mod tests {
         let [left, right] = [camera.project([-1.0, 0.0, -2.0]), camera.project([1.0, 0.0, 0.0])];
         assert_eq!((left.at, right.at), ([115.0, 185.0], [285.0, 15.0]));
         assert_eq!(left.scale, 85.0);
+    }
+
+    #[test]
+    fn in_a_plane_nothing_is_behind_anything() {
+        let swing = scene(&[[-1.0, 0.0, -2.0], [1.0, 0.0, 0.0]], [0.0, 0.0, -9.81]);
+        let camera = Camera::of(&swing, [400.0, 200.0]);
+        let depths = [-0.5, 0.0, 0.5].map(|x| camera.project([x, 0.0, -1.0]).depth);
+        assert!(depths.windows(2).all(|pair| pair[0].total_cmp(&pair[1]).is_eq()), "{depths:?}");
     }
 
     #[test]
