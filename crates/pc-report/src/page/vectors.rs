@@ -20,7 +20,7 @@ pub(super) fn vectors(columns: &[Column]) -> (Vec<Vec<Column>>, Vec<Column>) {
         for i in 0..columns.len() {
             let found = stems(&columns[i].0, marks).into_iter().filter(|_| !is_taken[i]).find_map(|stem| {
                 let alike = |j: &usize| !is_taken[*j] && stems(&columns[*j].0, marks).contains(&stem);
-                let all: Vec<usize> = (i..columns.len()).filter(alike).collect();
+                let all: Vec<usize> = (0..columns.len()).filter(alike).collect();
                 ((2..=MOST).contains(&all.len()) && are_visible(columns, &all)).then_some(all)
             });
             if let Some(all) = found {
