@@ -48,17 +48,17 @@ fn bodies_on_joints_are_rods_and_masses() {
 /// Edges 1, 2 and 3 of a mass of 2: I = 2 (2² + 3²)/12 and cyclically.
 #[test]
 fn a_body_that_turns_is_the_box_of_its_inertia() {
-    let body = "[coordinates]\nturn = 0.3\n[bodies.plate]\njoint = { kind = \"revolute\", axis = [0, 0, 1] }\nmass = 2.0\n\
+    let body = "[coordinates]\nplate = 0.3\n[bodies.plate]\njoint = { kind = \"revolute\", axis = [0, 0, 1] }\nmass = 2.0\n\
                 inertia = [\"13/6\", \"5/3\", \"5/6\"]\n";
     let read = |text: &str| Model::new(Document::parse(Source::new("model.toml", text)).unwrap());
     let shapes = drawn(&read(body)).unwrap();
     let [plate, centre] = &shapes[..] else { panic!("{shapes:?}") };
     let numbers: Vec<f64> = plate.split(", ").skip(3).take(3).map(|edge| edge.parse().unwrap()).collect();
     assert!(numbers.iter().zip([1.0, 2.0, 3.0]).all(|(edge, right)| (edge - right).abs() < 1e-12), "{plate}");
-    assert!(plate.contains("cos(turn)") && centre == "0, 0, 0", "{shapes:?}");
+    assert!(plate.contains("cos(plate)") && centre == "0, 0, 0", "{shapes:?}");
     // A point leads to a rod, and a drawing of the text takes the place of the box.
     let with_end = drawn(&read(&format!("{body}[points.end]\nbody = \"plate\"\nat = [1, 0, 0]\n"))).unwrap();
-    assert_eq!(with_end[..2], ["0, 0, 0, cos(turn), sin(turn), 0", "0, 0, 0"]);
+    assert_eq!(with_end[..2], ["0, 0, 0, cos(plate), sin(plate), 0", "0, 0, 0"]);
     let own = drawn(&read(&format!("{body}[[draw]]\nkind = \"point\"\nat = [0, 0]\n"))).unwrap();
     assert_eq!(own, ["0, 0, 0", "0, 0, 0"]);
 }
