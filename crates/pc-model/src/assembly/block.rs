@@ -1,9 +1,6 @@
 //! The homogeneous box with the mass and the inertia of a body, by which the body is drawn.
 
-use pc_mech::{Expr, Matrix, SingularValues};
-
-use crate::assembly::assembly::Assembly;
-use crate::assembly::drawing::{Shape, Spot};
+use pc_mech::{Matrix, SingularValues};
 
 /// The least edge, as a fraction of the largest: a thin rod or disc remains visible.
 const THIN: f64 = 0.02;
@@ -13,16 +10,16 @@ const NOTHING: f64 = 1e-9;
 
 /// A box with edges along principal axes.
 #[derive(Debug)]
-struct Block {
-    edges: [f64; 3],
+pub(super) struct Block {
+    pub(super) edges: [f64; 3],
     /// The principal axes, column by column, in components along the axes of the body.
-    axes: Matrix<f64>,
+    pub(super) axes: Matrix<f64>,
 }
 
 impl Block {
     /// From I_1 = m (a_2² + a_3²)/12 and cyclically, a_1² = 6 (I_2 + I_3 − I_1)/m. None without a positive mass and a moment of
     /// inertia, since nothing tells the size then.
-    fn of(mass: f64, inertia: &Matrix<f64>) -> Option<Block> {
+    pub(super) fn of(mass: f64, inertia: &Matrix<f64>) -> Option<Block> {
         let (moments, axes) = principal(inertia)?;
         let sum: f64 = moments.iter().sum();
         let edges = moments.map(|moment| (6.0 * (sum - 2.0 * moment) / mass).max(0.0).sqrt());
@@ -49,25 +46,6 @@ fn principal(inertia: &Matrix<f64>) -> Option<([f64; 3], Matrix<f64>)> {
     let handed: f64 = across.iter().zip(c).map(|(x, y)| x * y).sum::<f64>().signum();
     let axes = Matrix::from_fn(3, 3, |i, j| if j == 2 { handed * c[i] } else { right[(i, j)] });
     Some(([values[0], values[1], values[2]], axes))
-}
-
-/// The box of a body, with its values at the start.
-pub(super) fn block<'g>(
-    assembly: &Assembly<'g>,
-    (mass, inertia): (Expr<'g>, &Matrix<Expr<'g>>),
-    at: Spot<'g>,
-    rotation: &Matrix<Expr<'g>>,
-) -> Option<Shape<'g>> {
-    let graph = assembly.system.graph();
-    let mut start = assembly.at_start();
-    start.extend(assembly.system.parameters());
-    let entries = (0..9).map(|ij| inertia[(ij / 3, ij % 3)]);
-    let values = graph.evaluate(&entries.chain([mass]).collect::<Vec<_>>(), &start).ok()?;
-    let block = Block::of(values[9], &Matrix::from_fn(3, 3, |i, j| values[3 * i + j]))?;
-    let turned = |i: usize, j: usize| {
-        graph.dot((0..3).map(|k| rotation[(i, k)]), (0..3).map(|k| Expr::from(block.axes[(k, j)])))
-    };
-    Some(Shape::Box { at, size: block.edges.map(Expr::from), rotation: Matrix::from_fn(3, 3, turned) })
 }
 
 #[cfg(test)]

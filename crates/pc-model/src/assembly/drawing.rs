@@ -3,7 +3,7 @@
 use pc_mech::{Expr, Graph, Matrix};
 
 use crate::assembly::assembly::Assembly;
-use crate::assembly::block::block;
+use crate::assembly::block::Block;
 use crate::diagnostics::error::ModelError;
 use crate::document::{Body, Draw, DrawnShape, Expression, Inertia, Orientation};
 use crate::model::model::Model;
@@ -182,6 +182,25 @@ fn rotation<'g>(
         *value = scope.resolve(expression, stage)?;
     }
     Ok(Matrix::from_fn(3, 3, |i, j| values[3 * i + j]))
+}
+
+/// The box of a body, with its values at the start.
+fn block<'g>(
+    assembly: &Assembly<'g>,
+    (mass, inertia): (Expr<'g>, &Matrix<Expr<'g>>),
+    at: Spot<'g>,
+    rotation: &Matrix<Expr<'g>>,
+) -> Option<Shape<'g>> {
+    let graph = assembly.system.graph();
+    let mut start = assembly.at_start();
+    start.extend(assembly.system.parameters());
+    let entries = (0..9).map(|ij| inertia[(ij / 3, ij % 3)]);
+    let values = graph.evaluate(&entries.chain([mass]).collect::<Vec<_>>(), &start).ok()?;
+    let block = Block::of(values[9], &Matrix::from_fn(3, 3, |i, j| values[3 * i + j]))?;
+    let turned = |i: usize, j: usize| {
+        graph.dot((0..3).map(|k| rotation[(i, k)]), (0..3).map(|k| Expr::from(block.axes[(k, j)])))
+    };
+    Some(Shape::Box { at, size: block.edges.map(Expr::from), rotation: Matrix::from_fn(3, 3, turned) })
 }
 
 /// The box of a body that is not on a joint.
