@@ -182,7 +182,7 @@ fn width(row: &str) -> f64 {
 /// The pieces of a row, between which lines may end.
 fn pieces(row: &str) -> Vec<String> {
     let mut pieces = Vec::new();
-    for term in terms(&elements(row)) {
+    for term in terms(&elements(&joined(row))) {
         if width(&term) <= WIDE {
             pieces.push(term);
         } else {
@@ -190,6 +190,27 @@ fn pieces(row: &str) -> Vec<String> {
         }
     }
     pieces
+}
+
+/// The row with brackets that fit on a line as one element, so that no line ends within them.
+fn joined(row: &str) -> String {
+    let mut open: Vec<String> = vec![String::new()];
+    for element in elements(row) {
+        let last = open.len() - 1;
+        match element.whole {
+            OPEN => open.push(String::new()),
+            CLOSE if last > 0 => {
+                let inner = open.pop().unwrap_or_default();
+                let whole = match width(&inner) <= WIDE {
+                    true => format!("<mrow><mo>(</mo>{inner}<mo>)</mo></mrow>"),
+                    false => format!("{OPEN}{inner}{CLOSE}"),
+                };
+                push(&mut open, &whole);
+            }
+            whole => push(&mut open, whole),
+        }
+    }
+    open.join(OPEN) // a bracket that is not closed here stays as it is
 }
 
 /// The terms of a sum, each with its sign; the sign of the first belongs to it more closely.
@@ -341,6 +362,16 @@ mod tests {
         assert_eq!(pieces("<mi>b</mi><mo>−</mo><mi>a</mi>")[1], "<mo form=\"infix\">−</mo><mi>a</mi>");
         // Signs within brackets that fit divide nothing.
         assert_eq!(plain("<mrow><mo>(</mo><mi>a</mi><mo>+</mo><mi>b</mi><mo>)</mo></mrow>"), ["(a+b)"]);
+    }
+
+    #[test]
+    fn brackets_that_fit_stay_together() {
+        let around = |inner: &str| format!("{OPEN}{inner}{CLOSE}");
+        assert_eq!(plain(&around(&sum(3))), ["(abcdef+abcdef+abcdef)"]);
+        assert_eq!(plain(&around(&sum(6))).len(), 6);
+        assert_eq!(joined(&format!("{OPEN}<mi>a</mi>")), format!("{OPEN}<mi>a</mi>"));
+        let fraction = "<mfrac><mi>a</mi><mi>b</mi></mfrac>";
+        assert_eq!(joined(&around(fraction)), format!("<mrow><mo>(</mo>{fraction}<mo>)</mo></mrow>"));
     }
 
     #[test]
