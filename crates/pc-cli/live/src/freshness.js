@@ -1,0 +1,22 @@
+// Which parts of the page belong to the latest text. What is older stays, and is dimmed after a while.
+
+const PATIENCE = 400;
+
+export class Freshness {
+  // `mark` is told a part and whether it is old.
+  constructor(mark, wait = setTimeout) {
+    Object.assign(this, { mark, wait, latest: 0, shown: new Map() });
+  }
+
+  // Parts are expected from the request with this number.
+  expect(parts, id) {
+    this.latest = id;
+    parts.forEach((part) => this.shown.has(part) || this.shown.set(part, 0));
+    this.wait(() => parts.forEach((part) => this.mark(part, this.shown.get(part) < id)), PATIENCE);
+  }
+
+  got(part, id) {
+    this.shown.set(part, Math.max(id, this.shown.get(part) ?? 0));
+    this.mark(part, false);
+  }
+}
