@@ -3,7 +3,7 @@
 import { names, outline, sectionAt } from "./outline.js";
 
 const FUNCTIONS = [
-  "sin", "cos", "tan", "cot", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "ln", "sqrt", "abs", "sign", "min", "max",
+  "sin", "cos", "tan", "cot", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs", "sign", "min", "max", "step", "d",
 ];
 const CONSTANTS = ["pi", "t"];
 
