@@ -4,7 +4,7 @@ const PATIENCE = 400;
 
 export class Freshness {
   // `mark` is told a part and whether it is old.
-  constructor(mark, wait = setTimeout) {
+  constructor(mark, wait = (go, ms) => setTimeout(go, ms)) {
     Object.assign(this, { mark, wait, latest: 0, shown: new Map() });
   }
 
