@@ -15,6 +15,11 @@ export class Freshness {
     this.wait(() => parts.forEach((part) => this.mark(part, this.shown.get(part) < id)), PATIENCE);
   }
 
+  // Whether a part shows nothing newer yet.
+  isNews(part, id) {
+    return id >= (this.shown.get(part) ?? 0);
+  }
+
   got(part, id) {
     this.shown.set(part, Math.max(id, this.shown.get(part) ?? 0));
     this.mark(part, false);

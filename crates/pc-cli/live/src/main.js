@@ -19,6 +19,8 @@ import { Tabs } from "./tabs.js";
 const [TYPED, SLID] = [60, 250];
 const PER_SECOND = 30;
 const AGAIN = 1500;
+// The members of a sweep.
+const MEMBERS = 101;
 
 // What each result is shown in.
 const PARTS = { scene: "motion", plots: "plots", equations: "equations", verdicts: "verdicts" };
@@ -32,29 +34,29 @@ const editor = new Editor(byId("editor"), given.text, { changed: typed, save: ke
 const status = new Status(byId("status"), (diagnostic) => editor.show(diagnostic));
 const sliders = new Sliders(byId("sliders"), { changed: slid, write });
 const tabs = new Tabs(byId("tabs"), document.body);
-const freshness = new Freshness((part, isOld) => byId(part).classList.toggle("old", isOld));
+const freshness = new Freshness((part, isOld) => byId(part)?.classList.toggle("old", isOld));
 const actions = new Actions(byId("commands"), { tab: (name) => { computeNow(); tabs.show(name); }, output: print, file: give }, commandState);
 const compute = new Newest((job, signal) => request("compute", job, signal));
 const motion = new Latest((job) => request("motion", job), 1000 / PER_SECOND);
 new Divider(byId("columns-line"), byId("work"), "--columns", true, 0.4);
-new Divider(byId("rows-line"), byId("results"), "--rows", false, 0.56);
+new Divider(byId("rows-line"), byId("results"), "--rows", false, 0.54);
+
+// What requests say besides the text.
+function choices() {
+  return { set: sliders.values(), form: byId("form").value || undefined, t_end: read(byId("t-end").value) };
+}
 
 function job() {
-  const tEnd = read(byId("t-end").value);
-  return {
-    id: ++id, text: editor.text, set: sliders.values(), form: byId("form").value || undefined, t_end: tEnd,
-  };
+  return { id: ++id, text: editor.text, ...choices() };
 }
 
+// What command lines say.
 function commandState() {
-  const { set, form, t_end: tEnd } = { ...jobWithoutId() };
+  const { set, form, t_end: tEnd } = choices();
   const chosen = sliders.find(byId("vary").value);
-  const vary = chosen && { name: chosen.name, low: written(chosen.range.low), high: written(chosen.range.high), count: 101 };
-  return { model: given.model, set, form, tEnd: tEnd === undefined ? undefined : written(tEnd), vary, at: time === undefined ? undefined : written(Number(time.toPrecision(4))) };
-}
-
-function jobWithoutId() {
-  return { set: sliders.values(), form: byId("form").value || undefined, t_end: read(byId("t-end").value) };
+  const vary = chosen && { name: chosen.name, low: written(chosen.range.low), high: written(chosen.range.high), count: MEMBERS };
+  const words = (number, digits) => (number === undefined ? undefined : written(Number(number.toPrecision(digits))));
+  return { model: given.model, set, form, tEnd: words(tEnd, 15), vary, at: words(time, 4) };
 }
 
 // Sends a job and shows results as they come, unless something newer is on its way.
@@ -64,10 +66,12 @@ async function request(path, sent, signal) {
   status.begin();
   try {
     for await (const result of results(path, sent, signal)) {
-      if (signal?.aborted || (path === "motion" && compute.isBusy)) {
+      if (signal?.aborted) {
         return;
       }
-      show(result, sent);
+      if (freshness.isNews(PARTS[result.kind] ?? result.kind, sent.id)) {
+        show(result, sent);
+      }
     }
   } catch (error) {
     if (error.name === "AbortError") {
@@ -104,9 +108,7 @@ function show(result, sent) {
   } else if (kind === "done") {
     status.done(result.milliseconds);
   }
-  if (kind in PARTS) {
-    freshness.got(PARTS[kind], sent.id);
-  }
+  freshness.got(PARTS[kind] ?? kind, sent.id);
 }
 
 let typing;
@@ -125,10 +127,9 @@ function computeNow() {
 function slid() {
   actions.update();
   byId("reset-all").disabled = Object.keys(sliders.values()).length === 0;
-  // A text on its way comes first, and contains the values.
-  if (!compute.isBusy) {
-    motion.offer(job());
-  }
+  // What is at work has other values. The motion comes first, all else when the slider rests.
+  compute.abort();
+  motion.offer(job());
   clearTimeout(typing);
   typing = setTimeout(computeNow, SLID);
 }
@@ -178,8 +179,11 @@ async function keep(isForced = false) {
 // The body of a request for what a command prints or writes.
 function order(what) {
   const { vary, at } = commandState();
-  const { set, form, t_end } = jobWithoutId();
-  return { what, text: editor.text, set, form, t_end, vary: what === "sweep" ? vary && `${vary.name}=${vary.low}:${vary.high}:${vary.count}` : undefined, at: what === "png" ? at : undefined };
+  const more = {
+    sweep: vary && { vary: `${vary.name}=${vary.low}:${vary.high}:${vary.count}` },
+    png: { at },
+  };
+  return { what, text: editor.text, ...choices(), ...more[what] };
 }
 
 async function print(what, words) {
