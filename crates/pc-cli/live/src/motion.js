@@ -2,6 +2,9 @@
 
 import { byId } from "./elements.js";
 
+let isFirst = true;
+
+// Shows a motion; the first one plays at once, where things may move.
 export function showScene(data) {
   const { player } = byId("player");
   const isThere = data !== null && data.times !== "";
@@ -9,6 +12,10 @@ export function showScene(data) {
   if (player && isThere) {
     player.replace(data);
     byId("player").hidden = false;
+    if (isFirst && !window.matchMedia("(prefers-reduced-motion: reduce)").matches) {
+      byId("player").querySelector("[data-action=play]").click();
+    }
+    isFirst = false;
   } else if (player) {
     byId("player").hidden = true;
   }
