@@ -30,7 +30,8 @@ for (const name of packages) {
 }
 const notice = [...licences].map(([text, names]) => `${names.join(", ")}\n\n${text}`).join("\n\n----\n\n");
 // XML has no control characters; in a string, where esbuild leaves some, an escape means the same.
-const bundle = result.outputFiles[0].text.replace(/[^\P{Cc}\t\n]/gu, (sign) => `\\x${sign.charCodeAt(0).toString(16).padStart(2, "0")}`);
+const escape = (sign) => `\\x${sign.charCodeAt(0).toString(16).padStart(2, "0")}`;
+const bundle = result.outputFiles[0].text.replace(/[^\P{Cc}\t\n]/gu, escape);
 const script = `/* With CodeMirror:\n\n${notice}\n*/\n${bundle}`;
 
 // What would end the script element, or the CDATA section around its text, too early.

@@ -38,7 +38,10 @@ export class Actions {
         onclick: () => (how === "tab" ? does.tab(tab) : does[how](kind, words)),
       });
       const has = commandLine(kind, state()) !== undefined;
-      root.append(element("div", { className: "command" }, button, has ? element("div", { className: "line" }, line, copy) : element("span", { className: "soft", textContent: hint })));
+      const beside = has
+        ? element("div", { className: "line" }, line, copy)
+        : element("span", { className: "soft", textContent: hint });
+      root.append(element("div", { className: "command" }, button, beside));
       return { kind, line };
     });
     this.update();

@@ -3,7 +3,8 @@
 import { names, outline, sectionAt } from "./outline.js";
 
 const FUNCTIONS = [
-  "sin", "cos", "tan", "cot", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs", "sign", "min", "max", "step", "d",
+  "sin", "cos", "tan", "cot", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log", "sqrt",
+  "abs", "sign", "min", "max", "step", "d",
 ];
 const CONSTANTS = ["pi", "t"];
 
@@ -29,8 +30,8 @@ function schemasAt(root, path) {
   for (const key of path) {
     const below = at.flatMap((schema) => alternatives(schema.items, root).concat(schema));
     at = below.flatMap((schema) => {
-      const next = schema.properties?.[key] ?? (typeof schema.additionalProperties === "object" ? schema.additionalProperties : undefined);
-      return alternatives(next, root);
+      // Where any key may stand, the same follows each; `false` says that none may.
+      return alternatives(schema.properties?.[key] ?? schema.additionalProperties, root);
     });
   }
   return at.flatMap((schema) => alternatives(schema.items, root).concat(schema));
@@ -118,7 +119,8 @@ function keyOf(text, place) {
 function words(text, place, schemas, string) {
   const listed = schemas.flatMap((schema) => schema.enum ?? (schema.const === undefined ? [] : [schema.const]));
   if (listed.length > 0) {
-    return { from: place - string.length, options: [...new Set(listed)].map((label) => ({ label: String(label), type: "enum" })) };
+    const options = [...new Set(listed)].map((label) => ({ label: String(label), type: "enum" }));
+    return { from: place - string.length, options };
   }
   if (schemas.length > 0 && !schemas.some(isExpression)) {
     return null;
@@ -128,12 +130,18 @@ function words(text, place, schemas, string) {
     return null;
   }
   const own = names(text).map(({ name, kind, comment }) => ({
-    label: name, apply: kind === "function" ? `${name}(` : name, detail: kind, info: comment || undefined, type: "variable", boost: 2,
+    label: name,
+    apply: kind === "function" ? `${name}(` : name,
+    detail: kind,
+    info: comment || undefined,
+    type: "variable",
+    boost: 2,
   }));
   const common = FUNCTIONS.map((name) => ({ label: name, apply: `${name}(`, type: "function" }));
   const constants = CONSTANTS.map((name) => ({ label: name, detail: name === "t" ? "time" : undefined, type: "constant" }));
   const known = new Set(own.map(({ label }) => label));
-  return { from: place - word.length, options: [...own, ...common, ...constants].filter((one) => own.includes(one) || !known.has(one.label)) };
+  const others = [...common, ...constants].filter(({ label }) => !known.has(label));
+  return { from: place - word.length, options: [...own, ...others] };
 }
 
 // An expression is text or a number.

@@ -7,7 +7,8 @@ import { lintGutter, lintKeymap, setDiagnostics } from "@codemirror/lint";
 import { highlightSelectionMatches, search, searchKeymap } from "@codemirror/search";
 import { EditorState } from "@codemirror/state";
 import {
-  drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter, highlightSpecialChars, keymap, lineNumbers,
+  drawSelection, dropCursor, EditorView, highlightActiveLine, highlightActiveLineGutter, highlightSpecialChars, keymap,
+  lineNumbers,
 } from "@codemirror/view";
 import { tags } from "@lezer/highlight";
 import { complete } from "./completion.js";
@@ -48,7 +49,8 @@ export class Editor {
         indentWithTab,
       ]),
       EditorView.contentAttributes.of({
-        "aria-label": "Text of the model. Escape, then Tab, leaves the editor.", spellcheck: "false", autocapitalize: "off", autocorrect: "off",
+        "aria-label": "Text of the model. Escape, then Tab, leaves the editor.",
+        spellcheck: "false", autocapitalize: "off", autocorrect: "off",
       }),
       EditorView.updateListener.of((update) => update.docChanged && actions.changed()),
     ];

@@ -35,7 +35,7 @@ const status = new Status(byId("status"), (diagnostic) => editor.show(diagnostic
 const sliders = new Sliders(byId("sliders"), { changed: slid, write });
 const tabs = new Tabs(byId("tabs"), document.body);
 const freshness = new Freshness((part, isOld) => byId(part)?.classList.toggle("old", isOld));
-const actions = new Actions(byId("commands"), { tab: (name) => { computeNow(); tabs.show(name); }, output: print, file: give }, commandState);
+const actions = new Actions(byId("commands"), { tab: computeAndShow, output: print, file: give }, commandState);
 const compute = new Newest((job, signal) => request("compute", job, signal));
 const motion = new Latest((job) => request("motion", job), 1000 / PER_SECOND);
 new Divider(byId("columns-line"), byId("work"), "--columns", true, 0.4);
@@ -94,7 +94,7 @@ function show(result, sent) {
   } else if (kind === "names") {
     sliders.give(result.parameters, result.starts, comments(sent.text));
     offerNames(sliders.names());
-    actions.update();
+    showChoices();
   } else if (kind === "scene") {
     showScene(result.data);
   } else if (kind === "plots") {
@@ -124,9 +124,19 @@ function computeNow() {
   compute.start(job());
 }
 
-function slid() {
+function computeAndShow(tab) {
+  computeNow();
+  tabs.show(tab);
+}
+
+// The command lines contain what is chosen.
+function showChoices() {
   actions.update();
   byId("reset-all").disabled = Object.keys(sliders.values()).length === 0;
+}
+
+function slid() {
+  showChoices();
   // What is at work has other values. The motion comes first, all else when the slider rests.
   compute.abort();
   motion.offer(job());
@@ -223,16 +233,15 @@ document.addEventListener("keydown", (event) => {
 byId("save").addEventListener("click", keep);
 byId("reset-all").addEventListener("click", () => sliders.reset());
 byId("conflict-force").addEventListener("click", () => keep(true));
+byId("conflict").addEventListener("keydown", (event) => event.key === "Escape" && (byId("conflict").hidden = true));
 byId("conflict-cancel").addEventListener("click", () => (byId("conflict").hidden = true));
 byId("output-close").addEventListener("click", () => (byId("output-box").hidden = true));
-byId("form").addEventListener("change", () => {
-  actions.update();
-  computeNow();
-});
-byId("t-end").addEventListener("change", () => {
-  actions.update();
-  computeNow();
-});
+for (const choice of ["form", "t-end"]) {
+  byId(choice).addEventListener("change", () => {
+    showChoices();
+    computeNow();
+  });
+}
 byId("vary").addEventListener("change", () => actions.update());
 window.addEventListener("beforeunload", (event) => editor.text !== saved && event.preventDefault());
 

@@ -9,15 +9,21 @@ class Slider {
     Object.assign(this, { name, value, isStart, tell, given: value, range: rangeOf(value, isStart) });
     const words = isStart ? `Start of ${name}` : name;
     this.label = element("label", { className: "slider-name", textContent: name });
-    this.track = element("input", { type: "range", "aria-label": words, title: "A double click sets the value of the text again" });
-    this.field = element("input", { type: "text", inputMode: "decimal", autocomplete: "off", className: "slider-value", "aria-label": `${words}, exactly` });
+    this.track = element("input", {
+      type: "range", "aria-label": words, title: "A double click sets the value of the text again",
+    });
+    this.field = element("input", {
+      type: "text", inputMode: "decimal", autocomplete: "off", className: "slider-value", "aria-label": `${words}, exactly`,
+    });
     this.unit = element("span", { className: "soft", textContent: unit ?? "" });
     this.reset = element("button", {
-      type: "button", className: "quiet", textContent: "↺", title: "Value of the text", "aria-label": `Set ${words} as in the text`,
+      type: "button", className: "quiet", textContent: "↺", title: "Value of the text",
+      "aria-label": `Set ${words} as in the text`,
       onclick: () => this.set(this.given),
     });
     this.write = element("button", {
-      type: "button", className: "quiet", textContent: "✎", title: "Write into the text", "aria-label": `Write ${words} into the text`,
+      type: "button", className: "quiet", textContent: "✎", title: "Write into the text",
+      "aria-label": `Write ${words} into the text`,
       onclick: () => tell.write(name, written(this.value)),
     });
     this.row = element("div", { className: "slider" }, this.label, this.track, this.field, this.write, this.reset);
@@ -64,7 +70,7 @@ class Slider {
 
   show() {
     const { low, high, step } = this.range;
-    Object.assign(this.track, { min: low, max: high, step: step / 10, value: this.value });
+    Object.assign(this.track, { min: low, max: high, step, value: this.value });
     this.track.style.setProperty("--part", partOf(this.range, this.value));
     this.track.style.setProperty("--given", partOf(this.range, this.given));
     this.field.value = written(this.value);
