@@ -34,7 +34,11 @@ export class Status {
 
   diagnose(list) {
     this.list = list;
-    this.problems.textContent = counted(list);
+    const words = counted(list);
+    // The same words again are not read out.
+    if (this.problems.textContent !== words) {
+      this.problems.textContent = words;
+    }
     this.problems.disabled = list.length === 0;
     this.problems.title = list.length > 0 ? `Go to line ${list[0].line}` : "";
   }

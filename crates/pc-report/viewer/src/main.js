@@ -84,7 +84,8 @@ class Viewer {
     const wasFitted = this.isFitted();
     const origin = new Vector3(...before.middle);
     const isDefault = anchor.chosen === (before.follows ? MODEL : NOTHING);
-    const extent = measured(data);
+    const isAlike = described(data) === described(this.pose.data);
+    const extent = measured(data, isAlike ? before.follows : undefined);
     this.extent = extent;
     this.stage.measure(extent);
     clock.replace(data.times);
@@ -99,7 +100,9 @@ class Viewer {
     this.controls.measure(this.trails);
     this.controls.offer(anchors, this.anchor.chosen);
     this.colour();
-    const isTurned = ["flat", "isTop", "right", "up"].some((key) => String(before[key]) !== String(extent[key]));
+    // A motion of the same model that leaves its plane is looked at as before.
+    const directions = isAlike ? ["isTop", "right", "up"] : ["flat", "isTop", "right", "up"];
+    const isTurned = directions.some((key) => String(before[key]) !== String(extent[key]));
     const scale = before.size / extent.size;
     if (isTurned || this.anchor.chosen !== anchor.chosen || Math.abs(Math.log10(scale)) > Math.log10(OTHER_SIZE)) {
       this.look(isTurned ? this.firstView() : {}, true);
@@ -310,6 +313,11 @@ class Viewer {
     }
     return count;
   }
+}
+
+// The shapes in words, to compare.
+function described({ shapes }) {
+  return JSON.stringify(shapes.map(({ kind, count, text }) => [kind, count, text]));
 }
 
 const root = document.getElementById("player");
