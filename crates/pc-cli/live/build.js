@@ -25,7 +25,7 @@ for (const name of packages) {
   if (license !== "MIT") {
     throw new Error(`${name} has the licence ${license}, which nobody has looked at`);
   }
-  const text = readFileSync(`node_modules/${name}/LICENSE`, "utf8").trim().replace(/<[^>]*@[^>]*>/g, "").replace(/ +/g, " ");
+  const text = readFileSync(`node_modules/${name}/LICENSE`, "utf8").trim();
   licences.set(text, [...(licences.get(text) ?? []), `${name} ${version}`]);
 }
 const notice = [...licences].map(([text, names]) => `${names.join(", ")}\n\n${text}`).join("\n\n----\n\n");
