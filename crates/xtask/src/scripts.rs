@@ -7,7 +7,7 @@ use crate::command::{announce_and_run, workspace_root};
 use crate::error::Error;
 
 /// The directories with a `package.json` and its lock, whose `build` writes `dist`.
-const PLACES: [&str; 2] = ["crates/pc-report/viewer", "crates/pc-report/plots"];
+const PLACES: [&str; 3] = ["crates/pc-report/viewer", "crates/pc-report/plots", "crates/pc-cli/live"];
 
 pub(crate) fn run() -> Result<(), Error> {
     for place in PLACES {

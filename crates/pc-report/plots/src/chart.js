@@ -6,6 +6,8 @@ import { current, onTime, seek } from "./time.js";
 import { beside, exponential, powers, value } from "./words.js";
 
 const HEIGHT = 240;
+// The width of a chart that is not seen yet.
+const HIDDEN = 320;
 // A click may tremble by so many pixels; beyond, it is a drag, which zooms.
 const TREMBLE = 4;
 const FONT = '12px system-ui, "DejaVu Sans", sans-serif';
@@ -131,9 +133,18 @@ function followPointer(plot) {
   }
 }
 
-// Puts the chart into its figure, in place of the picture for readers without scripts.
+// What has to be the same in two charts for one to take the place of the other.
+export function kind({ label, decades, curves }) {
+  return JSON.stringify([label, decades, curves.map(({ name }) => name)]);
+}
+
+const dataOf = ({ times, curves }) => [times, ...curves.map((curve) => curve.values)];
+
+// Puts the chart into its figure, in place of the picture for readers without scripts. Returns how to show other numbers,
+// and how to remove it.
 export function draw(chart, figure) {
-  const { times, curves, decades, events } = chart;
+  const { curves, decades } = chart;
+  let { times, events } = chart;
   const line = document.createElement("div");
   line.className = "now";
 
@@ -159,7 +170,7 @@ export function draw(chart, figure) {
   }));
   const plot = new uPlot(
     {
-      width: figure.clientWidth,
+      width: figure.clientWidth || HIDDEN,
       height: HEIGHT,
       padding: [10, 18, 0, 0],
       series: [{ label: "t", value: (_plot, number) => name(value)(number ?? null) }, ...series],
@@ -187,7 +198,7 @@ export function draw(chart, figure) {
         setCursor: [mark],
       },
     },
-    [times, ...curves.map((curve) => curve.values)],
+    dataOf(chart),
     (self, ready) => {
       figure.append(self.root);
       self.over.append(line);
@@ -198,12 +209,35 @@ export function draw(chart, figure) {
   plot.root.setAttribute("aria-label", chart.label);
   makeKeys(plot);
   followPointer(plot);
-  onTime(() => mark(plot));
-  new ResizeObserver(() => {
+  const stop = onTime(() => mark(plot));
+  const observer = new ResizeObserver(() => {
     if (figure.clientWidth > 0 && figure.clientWidth !== plot.width) {
       plot.setSize({ width: figure.clientWidth, height: HEIGHT });
     }
-  }).observe(figure);
+  });
+  observer.observe(figure);
   figure.classList.add("live");
-  return plot;
+  return {
+    redraw: () => plot.redraw(false),
+    // The part of the time that is seen, if that is not all of it.
+    zoom: () => {
+      const { min, max } = plot.scales.x;
+      return min > times[0] || max < times.at(-1) ? { min, max } : null;
+    },
+    show: (range) => plot.setScale("x", range),
+    // A part of the time stays in view if the whole is the same.
+    replace: (next) => {
+      const { min, max } = plot.scales.x;
+      const isSame = next.times[0] === times[0] && next.times.at(-1) === times.at(-1);
+      ({ times, events } = next);
+      plot.setData(dataOf(next), false);
+      plot.setScale("x", isSame ? { min, max } : { min: times[0], max: times.at(-1) });
+    },
+    remove: () => {
+      stop();
+      observer.disconnect();
+      plot.destroy();
+      figure.classList.remove("live");
+    },
+  };
 }

@@ -7,8 +7,7 @@ function numbers([offset, text]) {
 }
 
 // The charts, each with the id of its figure and its curves, and the paths, each with the ends of its axes.
-export function read(text) {
-  const { times, charts, paths } = JSON.parse(text);
+export function read({ times, charts, paths }) {
   const lists = times.map(numbers);
   const drawn = charts.map((chart) => ({
     ...chart,

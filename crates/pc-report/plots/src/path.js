@@ -20,11 +20,11 @@ function place([low, high, from, to], value) {
   return from + ((value - low) / (high - low)) * (to - from);
 }
 
-// Follows the time on a picture whose columns are among the curves.
+// Follows the time on a picture whose columns are among the curves. Returns what ends that.
 export function follow(path, curves, picture) {
   const [x, y] = [curves.get(path.x), curves.get(path.y)];
   if (!x || !y) {
-    return;
+    return () => {};
   }
   const dot = document.createElementNS(picture.namespaceURI, "circle");
   dot.setAttribute("class", "dot");
@@ -39,5 +39,5 @@ export function follow(path, curves, picture) {
     }
   };
   mark(current() ?? x.times[0]);
-  onTime(mark);
+  return onTime(mark);
 }

@@ -14,8 +14,10 @@ export function current() {
   return now;
 }
 
+// Returns what ends the listening.
 export function onTime(listener) {
   listeners.push(listener);
+  return () => listeners.splice(listeners.indexOf(listener), 1);
 }
 
 // Goes to a time; a page without a player has it in its plots alone.

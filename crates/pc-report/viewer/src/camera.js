@@ -164,6 +164,15 @@ export class Viewpoint {
     }
   }
 
+  // Stays where it is in the space of the model, when the unit and the origin of the view change: a point p is at
+  // p scale + shift from then on. What is followed moves by itself.
+  keep(scale, shift) {
+    for (const view of this.change ? [this, this.change.start, this.change.goal] : [this]) {
+      view.offset.multiplyScalar(scale).add(shift);
+      view.distance = clamp(view.distance * scale, NEAREST, FARTHEST);
+    }
+  }
+
   // Where the view goes to, or is.
   goal() {
     return this.change ? this.change.goal : this;

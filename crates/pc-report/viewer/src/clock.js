@@ -18,14 +18,28 @@ export function defaultSpeed(duration) {
 
 export class Clock {
   constructor(times) {
-    this.times = times;
-    this.last = times.length - 1;
-    this.duration = Math.abs(times[this.last] - times[0]);
-    this.direction = times[this.last] < times[0] ? -1 : 1;
+    this.take(times);
     this.speed = defaultSpeed(this.duration);
     this.isPlaying = false;
     this.loops = true;
     this.show(0);
+  }
+
+  take(times) {
+    this.times = times;
+    this.last = times.length - 1;
+    this.duration = Math.abs(times[this.last] - times[0]);
+    this.direction = times[this.last] < times[0] ? -1 : 1;
+  }
+
+  // Goes on with another motion at the same time, and at the same speed if that was chosen.
+  replace(times) {
+    const { now } = this;
+    const isChosen = this.speed !== defaultSpeed(this.duration);
+    this.take(times);
+    this.speed = isChosen ? this.speed : defaultSpeed(this.duration);
+    this.isPlaying &&= this.duration > 0;
+    this.seek(now);
   }
 
   // Goes to a still.

@@ -19,7 +19,6 @@ export class Controls {
     this.find = (action) => root.querySelector(`[data-action="${action}"]`);
     this.slider = root.querySelector("input[type=range]");
     this.output = root.querySelector("output");
-    this.end = clock.text(clock.times[clock.last]);
     for (const [action, [words, key]] of Object.entries(BUTTONS)) {
       picture(this.find(action), action);
       name(this.find(action), words, key);
@@ -30,29 +29,39 @@ export class Controls {
     root.querySelectorAll("[data-action]").forEach((button) => {
       button.addEventListener("click", actions[button.dataset.action]);
     });
-    this.find("trails").hidden = trails.list.length === 0;
     this.find("full").hidden = !document.fullscreenEnabled;
-    this.slider.max = clock.last;
     this.slider.addEventListener("input", () => actions.show(Number(this.slider.value)));
-    this.addSpeeds();
+    const list = (name) => root.querySelector(`[data-list=${name}]`);
+    this.speeds = list("speed");
+    this.speeds.addEventListener("change", () => (clock.speed = Number(this.speeds.value)));
+    this.anchors = list("follow");
+    this.anchors.addEventListener("change", () => actions.follow(this.anchors.value));
+    this.measure(trails);
   }
 
-  addSpeeds() {
+  // Takes the times of the motion from the clock.
+  measure(trails) {
     const { clock } = this;
-    const list = this.root.querySelector("[data-list=speed]");
-    const speeds = new Set([1, ...roundNumbers(clock.speed / RANGE, clock.speed * RANGE)]);
-    for (const speed of [...speeds].sort((a, b) => a - b)) {
-      const isFirst = speed === clock.speed;
-      list.append(new Option(`${written(speed)}\u00d7`, speed, isFirst, isFirst));
+    this.end = clock.text(clock.times[clock.last]);
+    this.slider.max = clock.last;
+    this.find("trails").hidden = trails.list.length === 0;
+    // A speed that is listed already leaves the list as it is.
+    if (![...this.speeds.options].some(({ value }) => Number(value) === clock.speed)) {
+      this.listSpeeds();
     }
-    list.addEventListener("change", () => (clock.speed = Number(list.value)));
+    this.speeds.value = clock.speed;
+  }
+
+  listSpeeds() {
+    const { speed: now } = this.clock;
+    const speeds = [...new Set([1, ...roundNumbers(now / RANGE, now * RANGE)])].sort((a, b) => a - b);
+    this.speeds.replaceChildren(...speeds.map((speed) => new Option(`${written(speed)}\u00d7`, speed, speed === now)));
   }
 
   // Lists what the view may follow, as pairs of a value and words.
-  offer(anchors, chosen, choose) {
-    const list = this.root.querySelector("[data-list=follow]");
-    list.append(...anchors.map(([value, words]) => new Option(words, value, value === chosen, value === chosen)));
-    list.addEventListener("change", () => choose(list.value));
+  offer(anchors, chosen) {
+    const options = anchors.map(([value, words]) => new Option(words, value, value === chosen, value === chosen));
+    this.anchors.replaceChildren(...options);
   }
 
   // Shows the time, and which buttons are pressed.

@@ -11,8 +11,9 @@ function numbers(text) {
   return Float32Array.from({ length: bytes.length / 4 }, (_, i) => view.getFloat32(4 * i, true));
 }
 
-export function decoded(text) {
-  const { shapes: listed, times, frames, gravity } = JSON.parse(text);
+// From the text of the data, or from what is already read from it.
+export function decoded(source) {
+  const { shapes: listed, times, frames, gravity } = typeof source === "string" ? JSON.parse(source) : source;
   let width = 0;
   let hue = 0;
   const shapes = listed.map(([kind, count, words]) => {

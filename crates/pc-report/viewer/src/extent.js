@@ -8,6 +8,8 @@ const NOTHING = 1e-6;
 const LONG = 4;
 // What has no parts may be this much smaller than its path.
 const LONG_FOR_A_BALL = 40;
+// While a motion changes little by little, the view does so too: this much beyond the limits above.
+const SLACK = 3;
 
 class Bounds {
   low = [Infinity, Infinity, Infinity];
@@ -36,7 +38,8 @@ class Bounds {
   }
 }
 
-export function measured(data) {
+// `before`: whether the view followed the motion that this one takes the place of.
+export function measured(data, before) {
   const { shapes, stills, width } = data;
   const count = data.times.length;
   const all = new Bounds();
@@ -62,7 +65,8 @@ export function measured(data) {
   const path = all.size();
   const flat = flatAxis(data, places.extent(), path);
   const long = isSimple(data) ? LONG_FOR_A_BALL : LONG;
-  const follows = model > NOTHING * path && path > long * model;
+  const slack = before === undefined ? 1 : before ? 1 / SLACK : SLACK;
+  const follows = model > NOTHING * path && path > slack * long * model;
   const size = (follows ? model : path) || 1;
   const { right, up, isTop } = directions(data.gravity, flat);
   const isUpright = flat !== undefined && !isTop;

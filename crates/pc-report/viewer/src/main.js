@@ -1,5 +1,7 @@
-// The viewer: reads the motion from the page, and shows it where there is WebGL.
+// The viewer: reads the motion from the page, and shows it where there is WebGL. A page may also give it motions one after
+// the other, by `document.getElementById("player").player.replace(data)`, where `data` is what stands in a page otherwise.
 
+import { Vector3 } from "three";
 import { Anchor, anchorsOf, MODEL, NOTHING } from "./anchors.js";
 import { VIEWS, Viewpoint } from "./camera.js";
 import { Clock } from "./clock.js";
@@ -15,13 +17,17 @@ import { Pace } from "./pace.js";
 import { Pose } from "./pose.js";
 import { ScaleBar } from "./scalebar.js";
 import { Shapes } from "./shapes/shapes.js";
-import { Stage } from "./stage.js";
+import { dispose, Stage } from "./stage.js";
 import { Theme } from "./theme.js";
 import { onSeek, tell } from "./time.js";
 import { Trails } from "./trails.js";
 
 // A longer time between two pictures is not made up for.
 const LONGEST_STEP = 0.5;
+// A view that nobody has changed is fitted again to another motion where that needs so much more or less room.
+const [ROOMY, TIGHT] = [1.6, 0.97];
+// A motion of another order of size is looked at as a whole.
+const OTHER_SIZE = 10;
 
 class Viewer {
   constructor(root, data, context) {
@@ -33,26 +39,16 @@ class Viewer {
     const isStill = window.matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.extent = measured(data);
     this.clock = new Clock(data.times);
-    this.pose = new Pose(data);
     this.pace = new Pace();
     this.theme = new Theme(root);
     this.stage = new Stage(this.canvas, context, this.extent);
-    const { world } = this.stage;
-    this.shapes = new Shapes(data, this.extent.size);
-    this.trails = new Trails(data);
-    this.showsTrails = this.trails.areWanted;
-    world.add(this.shapes.group, this.trails.group);
-    this.ground = new Ground(this.extent, world);
-    this.stage.scene.add(this.ground.group);
-    this.labels = new Labels(data, world, box);
-    this.scaleBar = new ScaleBar(this.extent.size, box);
-    this.compass = new Compass(world, box);
     this.viewpoint = new Viewpoint(isStill);
-    this.anchor = new Anchor(data, this.extent, world, this.extent.follows ? MODEL : NOTHING);
+    this.size = { width: 0, height: 0 };
+    this.build(data, this.extent.follows ? MODEL : NOTHING);
+    this.showsTrails = this.trails.areWanted;
     this.actions = this.listActions();
     this.controls = new Controls(root, this.clock, this.trails, this.actions);
-    this.controls.offer(anchorsOf(data), this.anchor.chosen, (chosen) => this.follow(chosen));
-    this.size = { width: 0, height: 0 };
+    this.controls.offer(anchorsOf(data), this.anchor.chosen);
     this.picture = 0;
     this.listen();
     root.hidden = false;
@@ -62,6 +58,79 @@ class Viewer {
     this.draw();
     if (this.isAlone && !isStill) {
       this.actions.play();
+    }
+  }
+
+  // Makes what depends on the motion.
+  build(data, followed) {
+    const { extent, stage: { scene, world }, box } = this;
+    this.pose = new Pose(data);
+    this.shapes = new Shapes(data, extent.size);
+    this.trails = new Trails(data);
+    world.add(this.shapes.group, this.trails.group);
+    this.ground = new Ground(extent, world);
+    scene.add(this.ground.group);
+    this.labels = new Labels(data, world, box);
+    this.scaleBar = new ScaleBar(extent.size, box);
+    this.compass = new Compass(world, box);
+    this.anchor = new Anchor(data, extent, world, followed);
+  }
+
+  // Shows another motion in the same view, at the same time and with the same options.
+  replace(data) {
+    const { clock, extent: before, trails, anchor, viewpoint } = this;
+    const old = [this.shapes.group, this.trails.group, this.ground.group];
+    [this.labels.layer, this.scaleBar.element, this.compass.svg].forEach((element) => element.remove());
+    const wasFitted = this.isFitted();
+    const origin = new Vector3(...before.middle);
+    const isDefault = anchor.chosen === (before.follows ? MODEL : NOTHING);
+    const isAlike = described(data) === described(this.pose.data);
+    const extent = measured(data, isAlike ? before.follows : undefined);
+    this.extent = extent;
+    this.stage.measure(extent);
+    clock.replace(data.times);
+    const anchors = anchorsOf(data);
+    const isThere = !isDefault && anchors.some(([value]) => value === anchor.chosen);
+    this.build(data, isThere ? anchor.chosen : extent.follows ? MODEL : NOTHING);
+    if (trails.areWanted !== this.trails.areWanted) {
+      this.showsTrails = this.trails.areWanted;
+    }
+    this.trails.resize(this.size.width, this.size.height);
+    this.labels.measure();
+    this.controls.measure(this.trails);
+    this.controls.offer(anchors, this.anchor.chosen);
+    this.colour();
+    // A motion of the same model that leaves its plane is looked at as before.
+    const directions = isAlike ? ["isTop", "right", "up"] : ["flat", "isTop", "right", "up"];
+    const isTurned = directions.some((key) => String(before[key]) !== String(extent[key]));
+    const scale = before.size / extent.size;
+    if (isTurned || this.anchor.chosen !== anchor.chosen || Math.abs(Math.log10(scale)) > Math.log10(OTHER_SIZE)) {
+      this.look(isTurned ? this.firstView() : {}, true);
+    } else {
+      const isFixed = anchor.chosen === NOTHING;
+      viewpoint.keep(scale, isFixed ? origin.applyMatrix4(this.stage.world.matrix) : new Vector3());
+      this.fitted = wasFitted ? { ...this.fitted, distance: viewpoint.goal().distance } : undefined;
+      this.refit();
+    }
+    this.draw();
+    // Only now, so that programs of the graphics card that are needed again are not made anew.
+    old.forEach(dispose);
+  }
+
+  // Whether nobody has changed the view since it was fitted.
+  isFitted() {
+    return this.fitted !== undefined && this.viewpoint.goal().distance === this.fitted.distance;
+  }
+
+  // Fits a view that nobody has changed, if the motion is now too large or too small for it.
+  refit() {
+    if (!this.isFitted()) {
+      return;
+    }
+    const { distance, yaw, pitch } = this.viewpoint.goal();
+    const part = distance / this.viewpoint.fitted(this.anchor.balls(), { yaw, pitch }).distance;
+    if (part < TIGHT || part > ROOMY) {
+      this.look({});
     }
   }
 
@@ -104,6 +173,7 @@ class Viewer {
       front: () => this.look(VIEWS.front),
       side: () => this.look(VIEWS.side),
       top: () => this.look(VIEWS.top),
+      follow: (chosen) => this.follow(chosen),
       full: () => (document.fullscreenElement ? document.exitFullscreen() : this.root.requestFullscreen()),
     };
   }
@@ -161,7 +231,7 @@ class Viewer {
     this.trails.resize(width, height);
     this.labels.measure();
     // A view that nobody has changed stays fitted.
-    if (before.width > 0 && this.fitted && this.viewpoint.goal().distance === this.fitted.distance) {
+    if (before.width > 0 && this.isFitted()) {
       this.look({}, true);
     }
   }
@@ -221,6 +291,7 @@ class Viewer {
         this.draw();
       },
       frame: () => Array.from(this.pose.numbers),
+      held: () => ({ ...this.stage.renderer.info.memory, programs: this.stage.renderer.info.programs.length }),
       pixels: () => this.pixels(),
     };
   }
@@ -244,11 +315,28 @@ class Viewer {
   }
 }
 
+// The shapes in words, to compare.
+function described({ shapes }) {
+  return JSON.stringify(shapes.map(({ kind, count, text }) => [kind, count, text]));
+}
+
 const root = document.getElementById("player");
 const context = root.querySelector("canvas").getContext("webgl2", { alpha: true, antialias: true });
 if (context) {
-  const data = decoded(document.getElementById("player-data").textContent);
-  root.player = new Viewer(root, data, context).hook();
+  let viewer;
+  const replace = (data) => {
+    if (viewer) {
+      viewer.replace(decoded(data));
+    } else {
+      viewer = new Viewer(root, decoded(data), context);
+      Object.assign(root.player, viewer.hook());
+    }
+  };
+  root.player = { replace };
+  const given = document.getElementById("player-data");
+  if (given) {
+    replace(given.textContent);
+  }
 } else {
   document.getElementById("player-excuse").hidden = false;
 }

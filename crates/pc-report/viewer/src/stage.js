@@ -20,10 +20,18 @@ export class Stage {
     this.renderer.setClearColor(0x000000, 0);
     this.renderer.shadowMap.enabled = true;
     this.scene = new Scene();
-    this.world = world(extent);
-    this.towardsSun = extent.isUpright ? SUN_AT_WALL : SUN;
+    this.world = new Group();
+    this.world.matrixAutoUpdate = false;
+    this.measure(extent);
     this.scene.add(this.world);
     this.addLights();
+  }
+
+  // Takes the size and the directions of a motion.
+  measure(extent) {
+    this.world.matrix.copy(placed(extent));
+    this.world.matrixWorldNeedsUpdate = true;
+    this.towardsSun = extent.isUpright ? SUN_AT_WALL : SUN;
   }
 
   addLights() {
@@ -70,14 +78,21 @@ export class Stage {
   }
 }
 
+// Gives back what the graphics card holds for shapes that are no longer drawn.
+export function dispose(group) {
+  group.removeFromParent();
+  group.traverse((object) => {
+    object.geometry?.dispose();
+    object.material?.dispose();
+    object.dispose?.();
+  });
+}
+
 // The model's space, turned so that up is the second axis of the view, around the middle of the motion.
-function world({ right, up, middle, size }) {
+function placed({ right, up, middle, size }) {
   const [x, y] = [new Vector3(...right), new Vector3(...up)];
   const turned = new Matrix4().makeBasis(x, y, x.clone().cross(y)).transpose();
-  const group = new Group();
-  group.matrixAutoUpdate = false;
   const centred = new Matrix4().makeTranslation(...middle.map((m) => -m));
   const scaled = new Matrix4().makeScale(1 / size, 1 / size, 1 / size);
-  group.matrix.copy(scaled.multiply(turned).multiply(centred));
-  return group;
+  return scaled.multiply(turned).multiply(centred);
 }

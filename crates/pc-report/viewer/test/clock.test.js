@@ -52,3 +52,20 @@ test("a time is gone to between two stills, and not beyond the ends", () => {
   back.seek(-1.5);
   assert.deepEqual([back.still, back.now, back.position()], [1, -1.5, 1.5]);
 });
+
+test("another motion goes on at the same time", () => {
+  const clock = new Clock([0, 5, 10]);
+  clock.seek(7);
+  clock.isPlaying = true;
+  clock.replace([0, 2, 4, 6, 8, 10, 12]);
+  assert.equal(clock.now, 7);
+  assert.equal(clock.still, 3);
+  assert.ok(clock.isPlaying);
+  clock.replace([0, 1, 2]);
+  assert.equal(clock.now, 2);
+  // A speed that was chosen stays; the other fits the motion.
+  assert.equal(clock.speed, defaultSpeed(2));
+  clock.speed = 3;
+  clock.replace([0, 100]);
+  assert.equal(clock.speed, 3);
+});

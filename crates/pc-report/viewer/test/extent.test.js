@@ -52,3 +52,10 @@ test("numbers that are not known say nothing of the size", () => {
   assert.deepEqual([size, middle], [2, [1, 0, 0]]);
   assert.equal(measured(scene([["point", 3, ""]], [[NaN, NaN, NaN]])).size, 1);
 });
+
+test("a view that follows goes on to do so, and one that does not, while a motion changes little by little", () => {
+  const path = (length) => scene([["line", 6, ""]], [rod(0), rod(length)]);
+  assert.deepEqual([3, 5].map((length) => measured(path(length)).follows), [false, true]);
+  assert.deepEqual([3, 1.2, 0.1].map((length) => measured(path(length), true).follows), [true, true, false]);
+  assert.deepEqual([5, 10, 20].map((length) => measured(path(length), false).follows), [false, false, true]);
+});
