@@ -15,6 +15,7 @@ mod examples;
 pub(crate) mod forms;
 pub mod input;
 pub mod linear;
+pub mod live;
 pub mod models;
 pub mod options;
 pub mod report;

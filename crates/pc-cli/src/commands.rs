@@ -5,7 +5,7 @@
 //! its equations, `theory` the analysis of its motions, `linearize` the motions near a state,
 //! `equilibria` the states of rest, `run` integrates a model, `sweep` many members of one, whose shards `merge` puts together,
 //! `compare` compares two motions,
-//! `report` makes a page of all this, `emit` writes equations as source, or by `fmu` as an FMU,
+//! `report` makes a page of all this, `live` one that follows the text, `emit` writes equations as source, or by `fmu` as an FMU,
 //! `bench` measures them, `import` makes models from files in other formats, and `export` makes such files. `completions`,
 //! `man` and `version` are about the program.
 
@@ -20,6 +20,7 @@ pub mod export;
 pub mod fmu;
 pub mod import;
 pub mod linearize;
+pub mod live;
 pub mod man;
 pub mod merge;
 pub mod models;
@@ -49,6 +50,7 @@ pub fn command(command: &Command) -> Result<(), CliError> {
         Command::Run(arguments) => run::command(arguments),
         Command::Report(arguments) => report::command(arguments),
         Command::Animate(arguments) => report::animate(arguments),
+        Command::Live(arguments) => live::command(arguments),
         Command::Sweep(arguments) => sweep::command(arguments),
         Command::Merge(arguments) => merge::command(arguments),
         Command::Compare(arguments) => compare::command(arguments),

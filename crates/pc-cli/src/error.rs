@@ -69,6 +69,14 @@ pub enum CliError {
         /// Their names.
         files: Vec<String>,
     },
+    /// The page of `pc live` cannot be served.
+    #[error("cannot serve a page{}", if *port == 0 { String::new() } else { format!(" on port {port}; give another one, or none for any that is free") })]
+    Port {
+        /// The port that was asked for; 0 is any.
+        port: u16,
+        /// Why.
+        source: io::Error,
+    },
     /// The model file cannot be read.
     #[error("cannot read {name}")]
     Read {
@@ -233,6 +241,7 @@ impl CliError {
             | CliError::NoSuchTag { .. }
             | CliError::NoReactions { .. }
             | CliError::SeveralFiles { .. }
+            | CliError::Port { .. }
             | CliError::Read { .. }
             | CliError::UnknownValue(_)
             | CliError::UnknownIntegral(_)

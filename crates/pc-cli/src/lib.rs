@@ -19,6 +19,7 @@ mod exit_code;
 pub mod args;
 pub(crate) mod bench;
 pub mod commands;
+mod live;
 pub mod output;
 pub mod terminal;
 

@@ -39,6 +39,7 @@ mod still;
 pub use check::check::Check;
 pub use check::findings::Finding;
 pub use error::ReportError;
+pub use page::pieces;
 pub use page::player::animation;
 pub use page::report::report;
 pub use recording::{ColumnKind, Columns, Recording, Samples, UnknownColumn};

@@ -163,7 +163,7 @@ impl Scene {
 
     /// The data for the player: names, then times and numbers in IEEE 754 single precision, least significant
     /// byte first, encoded in base 64.
-    pub(crate) fn data(&self) -> Value {
+    pub fn data(&self) -> Value {
         let shapes: Vec<Value> = self
             .shapes
             .iter()

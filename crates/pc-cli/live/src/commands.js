@@ -7,7 +7,14 @@ export function quoted(argument) {
 
 // Options that all commands have: values other than those of the text.
 function settings({ set = {} }) {
-  return Object.entries(set).flatMap(([name, value]) => ["--set", `${name}=${value}`]);
+  return given(Object.entries(set));
+}
+
+// What a sweep varies has no single value.
+const unvaried = ({ set = {}, vary: range }) => given(Object.entries(set).filter(([name]) => name !== range?.name));
+
+function given(entries) {
+  return entries.flatMap(([name, value]) => ["--set", `${name}=${value}`]);
 }
 
 const form = (state) => (state.form ? ["--form", state.form] : []);
@@ -27,12 +34,12 @@ const COMMANDS = {
   theory: ["theory", settings],
   linearize: ["linearize", settings],
   equilibria: ["equilibria", settings],
-  sweep: ["sweep", settings, vary, only(INTEGRATED), end, to(".csv")],
+  sweep: ["sweep", unvaried, vary, only(INTEGRATED), end, to(".csv")],
   report: ["report", settings, only(INTEGRATED), end, to(".html")],
   animate: ["animate", settings, end, to(".html")],
-  png: ["animate", settings, end, ({ at }) => (at === undefined ? [] : ["--at", at]), to(".png")],
+  png: ["animate", settings, end, ({ at }) => (at === undefined ? [] : ["--time", at]), to(".png")],
   csv: ["run", settings, only(INTEGRATED), end, to(".csv")],
-  latex: ["derive", settings, form, () => ["--format", "latex"]],
+  latex: ["derive", settings, form, () => ["--format", "latex"], to(".tex")],
   c: ["emit", () => ["--lang", "c"], settings, only(WRITTEN), ({ stem }) => ["-o", `${stem}-c`]],
   rust: ["emit", () => ["--lang", "rust"], settings, only(WRITTEN), ({ stem }) => ["-o", `${stem}-rust`]],
   fmu: ["emit", () => ["--fmu", "3"], settings, only(WRITTEN), to(".fmu")],
@@ -48,8 +55,7 @@ export function commandLine(kind, state) {
   const [command, ...parts] = COMMANDS[kind];
   const whole = { ...state, stem: stemOf(state.model) };
   const rest = parts.flatMap((part) => part(whole));
-  const redirected = kind === "latex" ? ` > ${quoted(`${whole.stem}.tex`)}` : "";
-  return ["pc", command, state.model, ...rest].map(String).map(quoted).join(" ") + redirected;
+  return ["pc", command, state.model, ...rest].map(String).map(quoted).join(" ");
 }
 
 // The name of a file without its folder and its ending.

@@ -9,7 +9,8 @@ test("a line does what a button does", () => {
   assert.equal(commandLine("check", state), "pc check models/top.toml --set g=9.5");
   assert.equal(commandLine("derive", { ...state, form: "kane" }), "pc derive models/top.toml --set g=9.5 --form kane");
   assert.equal(commandLine("sweep", { ...state, tEnd: undefined }), "pc sweep models/top.toml --set g=9.5 --vary m=0:2:11 --form canonical -o top.csv");
-  assert.equal(commandLine("latex", state), "pc derive models/top.toml --set g=9.5 --form canonical --format latex > top.tex");
+  assert.equal(commandLine("sweep", { ...state, set: { m: "3" }, form: "" }), "pc sweep models/top.toml --vary m=0:2:11 --t-end 20 -o top.csv");
+  assert.equal(commandLine("latex", state), "pc derive models/top.toml --set g=9.5 --form canonical --format latex -o top.tex");
   assert.equal(commandLine("fmu", { model: "tilted-disk" }), "pc emit tilted-disk --fmu 3 -o tilted-disk.fmu");
   assert.equal(commandLine("notebook", state), undefined);
 });

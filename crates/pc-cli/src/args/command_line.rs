@@ -6,6 +6,7 @@ use crate::args::bench::BenchArguments;
 use crate::args::compare::CompareArguments;
 use crate::args::examples;
 use crate::args::linear::{EquilibriaArguments, LinearizeArguments};
+use crate::args::live::LiveArguments;
 use crate::args::models::ModelsArguments;
 use crate::args::options::{
     CheckArguments, DeriveArguments, EmitArguments, ExportArguments, ImportArguments, RunArguments,
@@ -69,6 +70,8 @@ pub enum Command {
     Report(Box<ReportArguments>),
     /// Write a page that animates the motion
     Animate(Box<AnimateArguments>),
+    /// Serve a page on this computer that follows the text of a model as it is edited
+    Live(LiveArguments),
     /// Integrate, linearize or check a model for many parameters and starts, on all cores; finished members are kept after an
     /// interruption
     Sweep(Box<SweepArguments>),

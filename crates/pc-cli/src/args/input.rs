@@ -7,7 +7,7 @@ use pc_expr::Limits;
 use pc_expr::parse::nearest;
 use pc_mech::{Equations, Graph};
 use pc_model::document::{read_bounded, read_file_bounded};
-use pc_model::{Assembly, Builtin, Document, Model, ModelError};
+use pc_model::{Assembly, Builtin, Document, Model, ModelError, Source};
 use pc_run::files::{apart, target};
 
 use crate::args::options::{ModelArguments, Setting, VelocityArguments};
@@ -92,21 +92,31 @@ pub fn keep_apart<'p>(
 }
 
 fn document(name: &str) -> Result<Document, CliError> {
+    Ok(Document::parse(source(name)?)?)
+}
+
+/// The text of the model that the command line names.
+///
+/// # Errors
+/// [`CliError`] if the model cannot be found or read.
+pub(crate) fn source(name: &str) -> Result<Source, CliError> {
     if name == "-" {
         let bytes = read_bounded(io::stdin().lock());
         let bytes = bytes.map_err(|source| CliError::Read { name: "standard input".to_owned(), source })?;
-        return Ok(Document::from_bytes("<stdin>", &bytes)?);
+        return Ok(Source::from_bytes("<stdin>", &bytes));
     }
     let path = Path::new(name);
     let looks_like_a_path = name.contains(['/', '\\', '.']);
     if !path.exists() || !(looks_like_a_path || path.is_file()) {
         return match Builtin::named(name) {
-            Some(builtin) if !looks_like_a_path => Ok(builtin.document()?),
+            Some(builtin) if !looks_like_a_path => {
+                Ok(Source::new(format!("{}.toml", builtin.name), builtin.text))
+            }
             _ => Err(no_such_model(name)),
         };
     }
     let bytes = read_file_bounded(path).map_err(|source| CliError::Read { name: name.to_owned(), source })?;
-    Ok(Document::from_bytes(name, &bytes)?)
+    Ok(Source::from_bytes(name, &bytes))
 }
 
 /// The error for an unknown model, which suggests the models that have the name as a part of theirs, or else the one whose name

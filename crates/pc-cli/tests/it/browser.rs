@@ -20,10 +20,10 @@ const SAMPLES: &str = "601";
 /// A page on two slow cores takes a few seconds: a browser that takes longer hangs.
 const PATIENCE: Duration = Duration::from_secs(1800);
 /// Held while a browser runs: one at a time has the memory and the processors for itself.
-static BROWSER: Mutex<()> = Mutex::new(());
+pub(crate) static BROWSER: Mutex<()> = Mutex::new(());
 
 /// A Chromium, by the variable `CHROMIUM` or on the path.
-fn chromium() -> Option<PathBuf> {
+pub(crate) fn chromium() -> Option<PathBuf> {
     if let Some(named) = std::env::var_os("CHROMIUM") {
         return Some(named.into());
     }

@@ -13,6 +13,8 @@ mod checkpoint;
 mod command_line_page;
 mod compare;
 mod constraints;
+#[cfg(unix)]
+mod devtools;
 mod dry_friction;
 mod each_model;
 mod equations;
@@ -32,6 +34,9 @@ mod kept_on_constraints;
 mod large;
 mod library;
 mod linear;
+mod live;
+#[cfg(unix)]
+mod live_in_a_browser;
 mod long_equations;
 mod methods;
 mod models;

@@ -65,7 +65,7 @@ fn others(assembly: &Assembly<'_>) -> Vec<Form> {
 }
 
 /// The equations in one form, unless they are too long.
-fn form(equations: &DisplayedEquations) -> Option<String> {
+pub(super) fn form(equations: &DisplayedEquations) -> Option<String> {
     let mut shown = format!("<h3>{}</h3>\n", text(&capitalised(&equations.name)));
     match &equations.plain {
         Some((whole, latex)) => {

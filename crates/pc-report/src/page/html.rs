@@ -6,7 +6,7 @@ use serde_json::Value;
 use crate::base64::base64;
 
 /// Text on one line, for use between elements or within quotation marks.
-pub(crate) fn text(text: &str) -> String {
+pub fn text(text: &str) -> String {
     escaped(&one_line(text))
 }
 
@@ -70,7 +70,7 @@ pub(crate) fn described<L: AsRef<str>>(entries: &[(L, Vec<String>)]) -> String {
 }
 
 /// Data for a script: JSON that contains neither `</script>` nor the end of a CDATA section.
-pub(crate) fn data(value: &Value) -> String {
+pub fn data(value: &Value) -> String {
     visible_json(value).replace('<', "\\u003c").replace('>', "\\u003e").replace('&', "\\u0026")
 }
 
@@ -84,13 +84,21 @@ pub(crate) fn page(title: &str, body: &str) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
-         <meta name=\"color-scheme\" content=\"light dark\"/>\n<title>{title}</title>\n<style>\n{}{}{}{}</style>\n</head>\n\
+         <meta name=\"color-scheme\" content=\"light dark\"/>\n<title>{title}</title>\n<style>\n{STYLE}{}{}{}</style>\n</head>\n\
          <body>\n{body}</body>\n</html>\n",
-        include_str!("style.css"),
         if body.contains("<math") { of_formulas() } else { String::new() },
-        if body.contains(PLOTS) { include_str!("../../plots/dist/plots.css") } else { "" },
-        if body.contains(PLAYER) { include_str!("viewer.css") } else { "" }
+        if body.contains(PLOTS) { OF_PLOTS } else { "" },
+        if body.contains(PLAYER) { OF_VIEWER } else { "" }
     )
+}
+
+const STYLE: &str = include_str!("style.css");
+const OF_PLOTS: &str = include_str!("../../plots/dist/plots.css");
+const OF_VIEWER: &str = include_str!("viewer.css");
+
+/// The style of pages that may have formulas, plots and a viewer.
+pub fn style() -> String {
+    format!("{STYLE}{}{OF_PLOTS}{OF_VIEWER}", of_formulas())
 }
 
 /// The style of formulas, with their font: browsers without a mathematical font of their own would set roots

@@ -18,42 +18,50 @@ const MOST_POINTS: usize = 1500;
 pub(super) fn motion(record: &Recording, pairs: &[(String, String)]) -> String {
     let remark = record.remark.as_ref().map_or_else(String::new, |remark| paragraph(remark));
     let mut shown = String::new();
-    let mut plots = Plots::default();
-    let mut number = 0;
-    let mut charts = |heading: &str, panels: &[Panel]| {
-        let drawn = &panels[..panels.len().min(MOST_CHARTS)];
-        let is_over_time = drawn.iter().all(|panel| !panel.is_portrait());
-        let mut figures = String::new();
-        for panel in drawn {
-            number += 1;
-            let id = format!("chart-{number}");
-            plots.add(&id, panel);
-            figures += &chart(panel, &id);
-        }
+    let groups = groups(record, pairs);
+    for Group { heading, panels, left } in &groups {
+        let figures: String = panels.iter().map(|(id, panel)| chart(panel, id)).collect();
+        let is_over_time = panels.iter().all(|(_, panel)| !panel.is_portrait());
         let class = if is_over_time { "charts" } else { "charts paths" };
-        let mut all = format!("<h3>{heading}</h3>\n<div class=\"{class}\">\n{figures}</div>\n");
-        let left: usize = panels[drawn.len()..].iter().map(|panel| panel.names().len()).sum();
-        if left > 0 {
-            all += &paragraph(&format!("{left} more are not drawn; pc run writes them."));
-        }
-        all
-    };
-    for columns in record.curves().columns.iter().filter(|columns| !columns.list.is_empty()) {
-        let panels = panels(record, columns);
-        if !panels.is_empty() {
-            shown += &charts(title(columns.kind), &panels);
+        shown += &format!("<h3>{heading}</h3>\n<div class=\"{class}\">\n{figures}</div>\n");
+        if *left > 0 {
+            shown += &paragraph(&format!("{left} more are not drawn; pc run writes them."));
         }
     }
-    let portraits: Vec<Panel> =
-        pairs.iter().filter_map(|(x, y)| portrait(record.curves(), (x, y), &[]).ok()).collect();
-    if !portraits.is_empty() {
-        shown += &charts("Phase portraits and paths", &portraits);
-    }
+    let plots = Plots::of(groups.into_iter().flat_map(|group| group.panels));
     if !record.summary.is_empty() {
         shown += "<h3>The run</h3>\n";
         shown += &described(&record.summary);
     }
     format!("{remark}{}{shown}{}", plots.help(), plots.script())
+}
+
+/// The charts of one kind, under a heading.
+pub(super) struct Group {
+    heading: &'static str,
+    /// The charts with their ids.
+    pub(super) panels: Vec<(String, Panel)>,
+    /// The number of columns that are not drawn, since there are too many.
+    left: usize,
+}
+
+/// The charts of a motion: those over time by the kinds of their columns, then the portraits of pairs.
+pub(super) fn groups(record: &Recording, pairs: &[(String, String)]) -> Vec<Group> {
+    let of_kinds = record.curves().columns.iter().filter(|columns| !columns.list.is_empty());
+    let over_time = of_kinds.map(|columns| (title(columns.kind), panels(record, columns)));
+    let portraits = pairs.iter().filter_map(|(x, y)| portrait(record.curves(), (x, y), &[]).ok()).collect();
+    let mut number = 0;
+    let mut group = |(heading, mut panels): (&'static str, Vec<Panel>)| {
+        let left = panels.iter().skip(MOST_CHARTS).map(|panel| panel.names().len()).sum();
+        panels.truncate(MOST_CHARTS);
+        let mut named = |panel| {
+            number += 1;
+            (format!("chart-{number}"), panel)
+        };
+        Group { heading, panels: panels.into_iter().map(&mut named).collect(), left }
+    };
+    let all = over_time.chain([("Phase portraits and paths", portraits)]);
+    all.filter(|(_, panels)| !panels.is_empty()).map(&mut group).collect()
 }
 
 /// The panels of columns of one kind: vectors, each by itself, and the others by their scales.

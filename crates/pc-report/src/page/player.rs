@@ -7,7 +7,7 @@ use crate::page::html::{PLAYER, data, page, text};
 use crate::scene::Scene;
 
 /// The viewer, with the licence of three.js at its head.
-const VIEWER: &str = include_str!("../../viewer/dist/viewer.js");
+pub const VIEWER: &str = include_str!("../../viewer/dist/viewer.js");
 
 /// The controls, whose words the viewer replaces by pictures, and fills where they are empty.
 const CONTROLS: &str = r#"<div class="controls" role="group" aria-label="Controls of the motion">

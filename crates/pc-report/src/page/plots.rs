@@ -7,18 +7,20 @@ use crate::page::html::{PLOTS, data};
 use crate::picture::chart::ends;
 use crate::picture::{Content, Curve, Panel, Scale};
 
+/// The script that draws the plots, with the licence of uPlot at its head.
+pub const SCRIPT: &str = include_str!("../../plots/dist/plots.js");
+
 /// The largest number of values in the plots of a page, which take up a fifth of a megabyte.
 const MOST_NUMBERS: usize = 36_000;
 
 /// The panels of a page, with the ids of their figures.
-#[derive(Default)]
 pub(super) struct Plots {
     panels: Vec<(String, Panel)>,
 }
 
 impl Plots {
-    pub(super) fn add(&mut self, id: &str, panel: &Panel) {
-        self.panels.push((id.to_owned(), panel.clone()));
+    pub(super) fn of(panels: impl Iterator<Item = (String, Panel)>) -> Plots {
+        Plots { panels: panels.collect() }
     }
 
     fn is_empty(&self) -> bool {
@@ -41,15 +43,14 @@ impl Plots {
         }
         format!(
             "<script type=\"application/json\" id=\"{PLOTS}\">{}</script>\n\
-             <script>/*<![CDATA[*/\n{}/*]]>*/</script>\n",
-            data(&self.data()),
-            include_str!("../../plots/dist/plots.js")
+             <script>/*<![CDATA[*/\n{SCRIPT}/*]]>*/</script>\n",
+            data(&self.data())
         )
     }
 
     /// The charts over time with their numbers, the lists of times, which charts share, and the paths of one
     /// column against another, with the ends of their axes.
-    fn data(&self) -> Value {
+    pub(super) fn data(&self) -> Value {
         let (paths, panels): (Vec<_>, Vec<_>) =
             self.panels.iter().partition(|(_, panel)| panel.is_portrait());
         let paths = paths.iter().map(|(id, panel)| {

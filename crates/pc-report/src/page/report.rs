@@ -13,7 +13,7 @@ use crate::recording::Recording;
 use crate::scene::Scene;
 
 /// The width of a line of a formula, in columns.
-const WIDTH: usize = 92;
+pub(super) const WIDTH: usize = 92;
 /// Texts with more lines than this are folded until they are opened.
 const LONG_TEXT: usize = 40;
 

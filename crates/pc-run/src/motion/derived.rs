@@ -61,10 +61,16 @@ impl Derived {
     /// # Errors
     /// [`ModelError`] if the equations have to be derived anew and cannot be.
     pub fn renewed(&self, model: &Model, form: Variables, t_start: f64) -> Result<Derived, ModelError> {
-        match self.prototype.as_ref().and_then(|prototype| prototype.flow(model, t_start)) {
-            Some(flow) => Ok(Derived { flow, prototype: self.prototype.clone(), facts: self.facts.clone() }),
+        match self.with_values(model, t_start) {
+            Some(derived) => Ok(derived),
             None => model.derived(|assembly| Derived::of(model, assembly, form)),
         }
+    }
+
+    /// The same equations for a model with other values, unless these change more than the numbers in them.
+    pub fn with_values(&self, model: &Model, t_start: f64) -> Option<Derived> {
+        let flow = self.prototype.as_ref()?.flow(model, t_start)?;
+        Some(Derived { flow, prototype: self.prototype.clone(), facts: self.facts.clone() })
     }
 }
 

@@ -28,8 +28,11 @@ pub(crate) fn of(assembly: &Assembly<'_>) -> Result<Vec<String>, RunError> {
     Ok(notes.0.into_inner().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// Tells the observer about it.
-fn say(assembly: &Assembly<'_>, observer: &dyn Observer) -> Result<(), RunError> {
+/// Tells the observer everything that is known about the equations before they are integrated.
+///
+/// # Errors
+/// [`RunError`] if they cannot be derived.
+pub fn say(assembly: &Assembly<'_>, observer: &dyn Observer) -> Result<(), RunError> {
     say_moved(assembly, observer);
     say_negative_energy(assembly, observer);
     say_changing_masses(assembly, observer);
