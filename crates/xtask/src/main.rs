@@ -19,6 +19,7 @@ mod error;
 mod fmu;
 mod fuzz;
 mod fuzz_c;
+mod gallery;
 mod header;
 mod install;
 mod notices;
@@ -58,6 +59,9 @@ usage: cargo xtask <command>
                    run the program on hostile models, files and checkpoints, within small limits, and strike it by kills and
                    signals; 10 minutes unless told
   book             make target/book of the pages in docs by mdbook, which is fetched from PyPI unless it is installed
+  gallery [--pictures [NAME…]]
+                   write docs/gallery.md from the texts of the models; --pictures also takes pictures of these models, or of all,
+                   by Node and Chromium
   header           write include/pc.h from the sources of the C interface
   scripts          bundle the scripts of pages in crates/pc-report from their modules, by npm
   c-examples       build the examples in C and C++, run them, compare their numbers with those of `pc`, and run them
@@ -113,6 +117,7 @@ fn dispatch(arguments: &[String]) -> Result<(), Error> {
         }
         "attack" => attack::run(rest),
         "fuzz" => fuzz::run(rest),
+        "gallery" => gallery::run(rest),
         "header" => {
             no_more(name, rest)?;
             header::run()

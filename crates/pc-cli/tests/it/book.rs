@@ -147,7 +147,7 @@ fn commands_that_are_named_succeed() {
     desk.write("top.toml", &model);
     desk.write("robot.urdf", &read(&root.join("tests/robots/arm.urdf")));
     let mut tried = 0;
-    for page in ["README.md", "docs/running.md"] {
+    for page in ["README.md", "crates/pc-cli/README.md", "docs/running.md"] {
         for command in shell_commands(&read(&root.join(page))) {
             println!("{page}: {command}");
             let (said, succeeds) = desk.run(&command);
@@ -195,8 +195,15 @@ fn links_lead_somewhere() {
     let root = docs().join("..");
     let mut files: Vec<PathBuf> = pages().iter().map(|page| docs().join(page)).collect();
     files.extend(
-        ["docs/SUMMARY.md", "README.md", "CONTRIBUTING.md", "examples-c/README.md"]
-            .map(|file| root.join(file)),
+        [
+            "docs/SUMMARY.md",
+            "README.md",
+            "CONTRIBUTING.md",
+            "crates/pc-cli/README.md",
+            "crates/pc-python/README.md",
+            "examples-c/README.md",
+        ]
+        .map(|file| root.join(file)),
     );
     let (mut lost, mut count) = (Vec::new(), 0);
     for file in files {

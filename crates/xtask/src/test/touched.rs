@@ -9,7 +9,7 @@ use crate::error::Error;
 
 /// Files outside packages whose change touches only some of these.
 const OUTSIDE: [(&str, &[&str]); 7] = [
-    ("docs/", &["pc-cli", "pc-fmu", "pc-tests"]),
+    ("docs/", &["pc-cli", "pc-fmu", "pc-tests", "xtask"]),
     ("README.md", &["pc-cli", "pc-tests"]),
     ("CHANGELOG.md", &[]),
     ("CONTRIBUTING.md", &[]),
