@@ -35,6 +35,7 @@ mod linear;
 mod long_equations;
 mod methods;
 mod models;
+mod named_units;
 mod new;
 mod numbers;
 mod oblique_axes;

@@ -39,13 +39,17 @@ pub(super) fn motion(record: &Recording, pairs: &[(String, String)]) -> String {
         all
     };
     for columns in record.curves().columns.iter().filter(|columns| !columns.list.is_empty()) {
-        let panels = panels(record, columns);
+        let panels: Vec<Panel> =
+            panels(record, columns).into_iter().map(|panel| panel.in_units(&record.units)).collect();
         if !panels.is_empty() {
             shown += &charts(title(columns.kind), &panels);
         }
     }
-    let portraits: Vec<Panel> =
-        pairs.iter().filter_map(|(x, y)| portrait(record.curves(), (x, y), &[]).ok()).collect();
+    let portraits: Vec<Panel> = pairs
+        .iter()
+        .filter_map(|(x, y)| portrait(record.curves(), (x, y), &[]).ok())
+        .map(|panel| panel.in_units(&record.units))
+        .collect();
     if !portraits.is_empty() {
         shown += &charts("Phase portraits and paths", &portraits);
     }
