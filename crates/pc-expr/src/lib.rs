@@ -56,6 +56,7 @@ pub use calculus::held::{Held, Surface};
 pub use calculus::polynomial::Polynomial;
 pub use calculus::substitution::Substitution;
 pub use codegen::chain::{Chain, ChainLayout};
+pub use codegen::identifier::greek;
 pub use codegen::layout::{Calls, FunctionBody, Language, Layout, Place, Slot};
 pub use error::{ExprError, readable};
 pub use graph::budget::Budget;

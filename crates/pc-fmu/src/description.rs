@@ -85,7 +85,7 @@ pub(crate) fn variables<'g>(contents: &Contents<'g>, units: &Units, version: Fmi
         Variable { depends, depends_at_start, is_intermediate: true, ..variable }
     };
     let mut all = vec![Variable::new("t", "independent", "continuous").described("time")];
-    all[0].unit = Some(Unit::TIME);
+    all[0].unit = Some(units.of("t").unwrap_or(Unit::TIME));
     all.extend(contents.states.iter().zip(&contents.symbols).map(|(state, &symbol)| {
         let causality = if state.is_column { "output" } else { "local" };
         let variable = Variable::new(&state.name, causality, "continuous").starting(state.number);
@@ -94,12 +94,17 @@ pub(crate) fn variables<'g>(contents: &Contents<'g>, units: &Units, version: Fmi
     all.extend(contents.states.iter().zip(contents.rates()).enumerate().map(|(i, (state, rate))| {
         let variable =
             Variable::new(&format!("der({})", state.name), "local", "continuous").initial("calculated");
-        let (derivative, unit) = (Some(OF_STATES + i), units.of(&state.name).map(Unit::rate));
+        let given = units.of(&format!("{}'", state.name));
+        let unit = given.or_else(|| units.of(&state.name).and_then(Unit::rate));
+        let derivative = Some(OF_STATES + i);
         computed(Variable { derivative, unit, is_rate: true, ..variable }, rate)
     }));
     let of_parameter = if contents.is_fixed { "fixed" } else { "tunable" };
     all.extend(contents.parameters.iter().map(|parameter| {
-        let of = |causality, variability| Variable::new(&parameter.name, causality, variability);
+        let of = |causality, variability| {
+            let variable = Variable::new(&parameter.name, causality, variability);
+            Variable { unit: units.of(&parameter.name), ..variable }
+        };
         match parameter.kind {
             ParameterKind::Given => of("parameter", of_parameter).starting(Some(parameter.value)),
             ParameterKind::Follows => {
@@ -228,7 +233,7 @@ pub(crate) fn model_description(
                     FmiVersion::V3 => empty(xml, name, &attributes)?,
                 }
             }
-            units::definitions(variables.iter().filter_map(|variable| variable.unit), xml)?;
+            units::definitions(variables.iter().filter_map(|variable| variable.unit.clone()), xml)?;
             inside(xml, "LogCategories", &Vec::new(), |xml| {
                 empty(xml, "Category", &vec![("name", "logStatusError".to_owned())])
             })?;
@@ -257,7 +262,7 @@ fn write_variable(xml: &mut Xml, version: FmiVersion, place: usize, variable: &V
     attributes.push(("causality", variable.causality.to_owned()));
     attributes.push(("variability", variable.variability.to_owned()));
     attributes.extend(variable.initial.map(|initial| ("initial", initial.to_owned())));
-    let mut of_real: Attributes = variable.unit.map(|unit| ("unit", unit.name())).into_iter().collect();
+    let mut of_real: Attributes = variable.unit.iter().map(|unit| ("unit", text(&unit.name()))).collect();
     of_real.extend(variable.start.map(|start| ("start", number(start))));
     match version {
         FmiVersion::V2 => {

@@ -422,6 +422,25 @@ fn units_are_those_of_time_and_of_angles_of_joints() {
 }
 
 #[test]
+fn units_are_those_that_the_text_names() {
+    let spring = written(
+        "[parameters]\nk = 4.0\n[coordinates]\nx = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"k*x^2/2\"\n\
+         [outputs]\npull = \"-k*x\"\nturn = \"x/2\"\n[units]\nx = \"m\"\n\"x'\" = \"m/s\"\nk = \"N/m\"\npull = \"N\"\nturn = \"rad\"\n\
+         [simulation]\nt_end = 1.0\n",
+    );
+    for version in VERSIONS {
+        let fmu = exported(&spring, version);
+        let unit = |name: &str| variable(&fmu, name, "unit");
+        let units = ["t", "x", "x'", "der(x)", "k", "pull", "turn"].map(unit);
+        assert_eq!(units.map(Option::unwrap), ["s", "m", "m/s", "m/s", "N/m", "N", "rad"]);
+        assert_eq!(unit("der(x')"), None);
+        let text = fmu.model_description();
+        // A name alone says nothing of its meaning.
+        assert!(text.contains("<Unit name=\"rad\">") && text.contains("<Unit name=\"N/m\""), "{text}");
+    }
+}
+
+#[test]
 fn parameters_follow_and_inputs_act() {
     let fmu = exported(&written(CART), FmiVersion::V2);
     assert_eq!(variable(&fmu, "J", "causality").as_deref(), Some("calculatedParameter"));

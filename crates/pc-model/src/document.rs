@@ -4,7 +4,7 @@
 //! TOML becomes a [`Document`]. Read the result first: `expression`, whose parts `text_map` locates in the file, and
 //! `contents`, section by section; `run_settings` contains the defaults of a run. Then see how the text is read: `reading` reads bytes,
 //! `syntax` parses TOML, `reader` gives typed access to its values, and `hidden` lists characters that labels must not contain.
-//! `sections`, `bodies`, `tree` with its `joints` and their `inertia`, `loops`, `contacts` made of a `contact` each, `inputs`, `functions`, `draw` and `simulation`, with its
+//! `sections`, `bodies`, `tree` with its `joints` and their `inertia`, `loops`, `contacts` made of a `contact` each, `inputs`, `functions`, `draw`, `units` and `simulation`, with its
 //! `tolerance`s, read the sections; `hanging` declares the coordinates of joints, `checks` tests conditions between the sections, and
 //! `parse` combines all of these. `schema` describes the format for editors.
 
@@ -34,6 +34,7 @@ pub(crate) mod syntax;
 pub(crate) mod text_map;
 pub(crate) mod tolerance;
 pub(crate) mod tree;
+pub(crate) mod units;
 
 pub use contact::{Contact, ContactFriction, ContactShape};
 pub use contents::{
@@ -52,3 +53,4 @@ pub use schema::SCHEMA;
 pub use simulation::MOST_SAMPLES;
 pub use text_map::TextMap;
 pub use tolerance::AbsoluteTolerance;
+pub use units::NamedUnit;

@@ -53,6 +53,7 @@ pub use page::displayed::{
 pub use page::page::page;
 pub use theory::bracket_of::bracket_of;
 pub use theory::description::Theory;
+pub use theory::extent::Extent;
 pub use theory::integrals::{integrals_of, level_in_words};
 pub use theory::linear_model::LinearModel;
 pub use theory::measure::reducing_multiplier;

@@ -16,6 +16,7 @@ pub(crate) mod canonical_variables;
 pub(crate) mod dependent_momenta;
 pub(crate) mod description;
 pub(crate) mod dirac;
+pub(crate) mod extent;
 pub(crate) mod folded;
 pub(crate) mod functions;
 pub(crate) mod integrals;

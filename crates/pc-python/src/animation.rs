@@ -63,12 +63,12 @@ pub(crate) fn panels_of(title: &str, recorded: Recorded) -> Vec<Drawn> {
 fn drawn(panel: Panel) -> Drawn {
     let scale = match panel.up.1 {
         Scale::Linear => "linear",
-        Scale::Decades => "decades",
+        Scale::Decades | Scale::SignedDecades(_) => "decades",
         Scale::Angles => "angles",
     };
     let curves = match panel.content {
         Content::Curves(curves) => curves,
-        Content::Bars(_) | Content::Cells { .. } => Vec::new(),
+        Content::Fan(_) | Content::Roots(_) | Content::Bars(_) | Content::Cells { .. } => Vec::new(),
     };
     let curve = |curve: pc_report::picture::Curve| {
         let (across, up) = curve.points.into_iter().unzip();

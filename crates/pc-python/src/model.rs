@@ -6,7 +6,7 @@ use pc_expr::{Cancel, Limits};
 use pc_mech::{EmitOptions, Interpolation, KnownRates, Language, Table};
 use pc_model::document::AbsoluteTolerance;
 use pc_model::{Assembly, Builtin, Document, GivenInput, Model, Variables, deep};
-use pc_print::{Form, Layout, Page, Theory, TheoryOptions, displayed_equations, page};
+use pc_print::{Extent, Form, Layout, Page, Theory, TheoryOptions, displayed_equations, page};
 use pc_run::motion::verification::checked;
 use pc_verify::{Outlet, VerifyError, vouch};
 use pyo3::prelude::*;
@@ -345,7 +345,7 @@ impl ModelCore {
         canonical: Vec<(String, String)>,
     ) -> PyResult<String> {
         let language = self::language(language)?;
-        let options = TheoryOptions { degree, functions, canonical };
+        let options = TheoryOptions { degree, functions, canonical, extent: Extent::Full };
         self.assembled(py, Some(Outlet::Equations(Variables::QuasiVelocities)), move |model, assembly| {
             Ok(Theory::of(model, assembly, &options)?.printed(language))
         })

@@ -41,7 +41,7 @@ pub use check::findings::Finding;
 pub use error::ReportError;
 pub use page::pieces;
 pub use page::player::animation;
-pub use page::report::report;
+pub use page::report::{Page, report};
 pub use recording::{ColumnKind, Columns, Recording, Samples, UnknownColumn};
 pub use remarks::{NEGATIVE_ENERGY, changing_masses, dropped};
 pub use scene::{Scene, SceneShape};

@@ -3,23 +3,28 @@
 //! A [`Recording`](crate::Recording) is divided into [`Panel`]s, each with curves that one scale shows well;
 //! several panels form a [`Picture`], and this is turned into a [`Drawing`]: lines, areas and texts that can
 //! be written in any format. Read `panel`, the contents of common axes; `scales`, which curves share them;
-//! `motion`, the panels of a motion; `axes`, round numbers; `simplify`, the visible points; `chart`, a panel
-//! drawn; `drawing` and `svg`, the shapes and their output; `sheet`, panels arranged one below the other;
+//! `motion`, the panels of a motion; `axes`, round numbers; `simplify`, the visible points; `fan` and
+//! `roots`, two kinds of contents; `chart`, a panel drawn; `drawing` and `svg`, the shapes and their output; `units`, their names; `sheet`, panels arranged one below the other;
 //! `plane`, eigenvalues.
 
 mod axes;
 pub(crate) mod chart;
 mod drawing;
+mod fan;
 pub(crate) mod motion;
 mod panel;
 pub(crate) mod plane;
+mod roots;
 mod scales;
 mod sheet;
 mod simplify;
 mod svg;
+pub(crate) mod units;
 
 pub use drawing::{Anchor, Drawing, Ink, Shape};
+pub use fan::{Band, Fan};
 pub use motion::Wanted;
 pub use panel::{Content, Curve, Panel, Scale};
+pub use roots::Root;
 pub use scales::by_scale;
 pub use sheet::Picture;

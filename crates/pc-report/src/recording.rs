@@ -50,6 +50,8 @@ pub struct Recording {
     pub keeps_energy: bool,
     /// The times at which events occurred.
     pub events: Vec<f64>,
+    /// The units of columns, as pairs of names.
+    pub units: Vec<(String, String)>,
     /// The reason why there is no motion, or how it ended if it was not completed.
     pub remark: Option<String>,
 }

@@ -55,7 +55,7 @@ fn record() -> Recording {
         summary: vec![("method".to_owned(), vec!["Adams <b>".to_owned()])],
         keeps_energy: true,
         events: vec![0.25],
-        remark: None,
+        ..Recording::default()
     }
 }
 

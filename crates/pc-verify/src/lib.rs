@@ -37,7 +37,7 @@ mod tests;
 mod text;
 
 pub use comparison::agreement::Agreement;
-pub use comparison::compare::{Options, verify};
+pub use comparison::compare::{LONG_EQUATIONS, Options, verify};
 pub use comparison::outlet::{Outlet, vouch};
 pub use comparison::resets::Jump;
 pub use comparison::second::Second;

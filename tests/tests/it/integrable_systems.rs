@@ -172,7 +172,7 @@ fn list<'g>(system: &Integrable, model: &Model, assembly: &Assembly<'g>) -> Inte
     let near = Neighbourhood { centre };
     let mut integrals = integrals_of(assembly, &equations, &near, false);
     let functions = system.functions.iter().map(|text| model.function(assembly, text).unwrap()).collect();
-    let ansatz = PolynomialAnsatz { degree: system.degree, functions };
+    let ansatz = PolynomialAnsatz { functions, ..PolynomialAnsatz::of_degree(system.degree) };
     integrals.add_polynomials(&equations, &near, &ansatz).unwrap();
     integrals
 }

@@ -39,7 +39,7 @@ pub(crate) fn integrals_of_all_models_are_kept_at_random_states(derived: &Derive
     let parameters = system.parameters().to_vec();
     let near = Neighbourhood { centre: [assembly.at_start(), parameters.clone()].concat() };
     let mut found = Integrals::known(equations, &near);
-    found.add_polynomials(equations, &near, &PolynomialAnsatz { degree: 2, functions: Vec::new() }).unwrap();
+    found.add_polynomials(equations, &near, &PolynomialAnsatz::of_degree(2)).unwrap();
 
     let mut motion = derived.equations_compiled();
     let (state, start) = (system.state(), assembly.start_of(&system.state()));

@@ -91,8 +91,8 @@ pub enum ConservationVerdict<'g> {
     },
 }
 
-/// The functions that are integrals, or may be.
-#[derive(Clone, Debug)]
+/// The functions that are integrals, or may be; none by default.
+#[derive(Clone, Debug, Default)]
 pub struct Integrals<'g> {
     pub(super) list: Vec<Integral<'g>>,
 }

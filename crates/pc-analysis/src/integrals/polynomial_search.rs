@@ -9,7 +9,7 @@ use crate::integrals::polynomials::{Generator, monomials};
 use crate::integrals::rates::Rates;
 use crate::integrals::search::{Search, binomial};
 
-/// The largest number of functions with unknown coefficients; a search with this many takes some seconds.
+/// The largest number of functions with unknown coefficients by default; a search with this many takes some seconds.
 const MOST_FUNCTIONS: usize = 600;
 
 /// The largest degree in the coordinates, and the largest number of functions if the degree is higher than the usual one.
@@ -34,6 +34,15 @@ pub struct PolynomialAnsatz<'g> {
     pub degree: u32,
     /// The f_m other than 1.
     pub functions: Vec<Expr<'g>>,
+    /// The largest number of functions with an unknown coefficient: the degree in the coordinates is the highest that has no more.
+    pub most: usize,
+}
+
+impl<'g> PolynomialAnsatz<'g> {
+    /// The ansatz of a degree in η without further functions, of the usual size.
+    pub fn of_degree(degree: u32) -> PolynomialAnsatz<'g> {
+        PolynomialAnsatz { degree, functions: Vec::new(), most: MOST_FUNCTIONS }
+    }
 }
 
 /// The extent of a search by an ansatz.
@@ -86,7 +95,8 @@ impl<'g> Integrals<'g> {
     /// let mut found = Integrals::find(&equations, &near);
     /// let [x, y] = graph.symbols(["x", "y"]);
     /// let functions = vec![1.0 / (x.square() + y.square()).sqrt()];
-    /// found.add_polynomials(&equations, &near, &PolynomialAnsatz { degree: 2, functions })?;
+    /// let ansatz = PolynomialAnsatz { functions, ..PolynomialAnsatz::of_degree(2) };
+    /// found.add_polynomials(&equations, &near, &ansatz)?;
     /// assert_eq!(found.list().len(), 4); // energy, area, and the vector of Runge and Lenz
     /// assert!(found.list().iter().all(|integral| integral.is_conserved()));
     /// # Ok::<(), pc_analysis::AnalysisError>(())
@@ -111,7 +121,7 @@ impl<'g> Integrals<'g> {
             rates.coordinates.iter().filter(|&&x| !rates.flow.iter().any(|(_, rate)| rate.depends_on(x)));
         let circular = cyclic.flat_map(|x| [x.cos(), x.sin()]);
         let functions = ansatz.functions.iter().copied().chain(circular).collect();
-        let linear = PolynomialAnsatz { degree: ansatz.degree.min(1), functions };
+        let linear = PolynomialAnsatz { degree: ansatz.degree.min(1), functions, most: ansatz.most };
         if let Ok(spans) = Spans::new(graph, rates, &linear, 3) {
             self.add_span(&search, &spans)?;
         }
@@ -259,7 +269,7 @@ impl<'g> Span<'g> {
         let of_velocities = binomial(k + degree, degree);
         let times = 1 + ansatz.functions.len();
         for coefficients in (0..=HIGHEST).rev() {
-            let most = if coefficients > usual { MOST_OF_HIGHER } else { MOST_FUNCTIONS };
+            let most = if coefficients > usual { MOST_OF_HIGHER.min(ansatz.most) } else { ansatz.most };
             // An angle has a sine and a cosine, so it adds no fewer functions.
             let least = binomial(n + coefficients as usize, coefficients as usize);
             if of_velocities.saturating_mul(least).saturating_mul(times) > most {

@@ -9,10 +9,10 @@ use crate::numeric::newton;
 use crate::stability::steady_motion::{SteadyMotion, SteadyOptions};
 use crate::stability::steady_search::{Known, NearbySteadyMotion, Seeker, Surface, is_autonomous};
 
-/// The number of starts of each kind, for systems of few components.
+/// The largest number of starts of each kind, for systems of few components.
 const STARTS: usize = 64;
 
-/// The greatest product of the number of starts and the square of the number of components.
+/// The greatest product of the number of starts and the square of the number of components, unless less is asked for.
 const MOST_WORK: usize = 20_000;
 
 /// The largest number of steps in which Newton's method reaches the values that the integrals have at the
@@ -76,7 +76,7 @@ impl SteadyMotions {
     /// the start. If there are families with these integrals, one member of each dimension is kept.
     ///
     /// `motion` is compiled from the `equations`, `positions` are the relations between coordinates that constraints
-    /// imply, and `integrals` are the known integrals.
+    /// imply, `integrals` are the known integrals, and there are at most `most_starts` starts of each kind.
     ///
     /// # Errors
     /// [`NoSteadyMotions`] with the reason.
@@ -86,6 +86,7 @@ impl SteadyMotions {
         (t, start): (f64, &[f64]),
         integrals: &[Integral<'g>],
         positions: &[(String, Expr<'g>)],
+        most_starts: usize,
     ) -> Result<SteadyMotions, NoSteadyMotions> {
         if start.len() > MOST_COMPONENTS {
             return Err(NoSteadyMotions::TooLarge { components: start.len() });
@@ -110,7 +111,7 @@ impl SteadyMotions {
             guess
         };
         let at_rest = SteadyOptions::default().fixed(velocities.clone());
-        let guesses = guesses(start, &found.periods);
+        let guesses = guesses(start, &found.periods, most_starts);
         for guess in guesses.iter().cloned().map(still) {
             found.look(&seeker, motion, start, (&guess, &at_rest), (&surface, &of_place));
         }
@@ -239,10 +240,10 @@ pub(crate) fn periods(motion: &mut Motion, t: f64, start: &[f64]) -> Vec<Option<
     (0..start.len()).map(|i| (i < coordinates && is_periodic(i)).then_some(TAU)).collect()
 }
 
-/// The start, and other guesses spread evenly about it using multiples of roots of primes.
-fn guesses(start: &[f64], periods: &[Option<f64>]) -> Vec<Vec<f64>> {
+/// The start, and at most as many other guesses, spread evenly about it using multiples of roots of primes.
+fn guesses(start: &[f64], periods: &[Option<f64>], most: usize) -> Vec<Vec<f64>> {
     let size = start.len().max(1);
-    let count = (MOST_WORK / (size * size)).clamp(4, STARTS);
+    let count = (MOST_WORK / (size * size)).clamp(4, STARTS).min(most.max(1));
     let roots: Vec<f64> = primes().take(start.len()).map(|p| f64::from(p).sqrt().fract()).collect();
     let guess = |number: usize| -> Vec<f64> {
         let place = |i: usize| {

@@ -44,7 +44,8 @@ fn assert_integrals(
         let centre = state.chain(system.parameters().iter().copied()).chain([(graph.symbol("t"), 0.0)]);
         let near = Neighbourhood { centre: centre.collect() };
         let mut found = Integrals::find(&equations, &near);
-        let ansatz = PolynomialAnsatz { degree, functions: functions(&system) };
+        let ansatz =
+            PolynomialAnsatz { functions: functions(&system), ..PolynomialAnsatz::of_degree(degree) };
         found.add_polynomials(&equations, &near, &ansatz).unwrap();
         let proved =
             found.list().iter().filter(|integral| integral.verdict == ConservationVerdict::Conserved);

@@ -13,7 +13,8 @@ fn found<'g>(
     let state = equations.system().state().into_iter().chain([graph.symbol("t")]);
     let near = Neighbourhood { centre: state.zip([0.7, -0.4, 0.9, 0.3, 0.8, -0.5, 0.0]).collect() };
     let mut all = Integrals::known(equations, &near);
-    let made = all.add_polynomials(equations, &near, &PolynomialAnsatz { degree, functions }).unwrap();
+    let ansatz = PolynomialAnsatz { functions, ..PolynomialAnsatz::of_degree(degree) };
+    let made = all.add_polynomials(equations, &near, &ansatz).unwrap();
     assert!(all.list().iter().all(Integral::is_conserved), "{all:?}");
     (all.list().iter().filter(|integral| integral.origin == Origin::Found).cloned().collect(), made)
 }
@@ -104,7 +105,7 @@ fn functions_of_foreign_symbols_are_refused() {
     let graph = Graph::new();
     let equations = oscillator(&graph, [1.0, 2.0]);
     let near = Neighbourhood::default();
-    let ansatz = PolynomialAnsatz { degree: 2, functions: vec![graph.symbol("s")] };
+    let ansatz = PolynomialAnsatz { functions: vec![graph.symbol("s")], ..PolynomialAnsatz::of_degree(2) };
     let refusal = Integrals::known(&equations, &near).add_polynomials(&equations, &near, &ansatz);
     let message = refusal.unwrap_err().to_string();
     assert!(

@@ -11,7 +11,7 @@ fn search(system: &System<'_>, start: &[f64]) -> Result<SteadyMotions, NoSteadyM
         Neighbourhood { centre: state.chain([time]).chain(system.parameters().iter().copied()).collect() };
     let integrals = Integrals::find(&equations, &near);
     let mut motion = equations.compile().unwrap();
-    SteadyMotions::search(&equations, &mut motion, (0.0, start), integrals.list(), &[])
+    SteadyMotions::search(&equations, &mut motion, (0.0, start), integrals.list(), &[], usize::MAX)
 }
 
 /// Newton's method ends at rounding; states are of order one.

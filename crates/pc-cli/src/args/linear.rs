@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use pc_run::linear::locus_picture::Axes;
 use pc_run::sweep::values::Vary;
 
 use crate::args::options::{self, ModelArguments, VerifyArguments};
@@ -17,6 +18,24 @@ pub enum MatrixFormat {
     Json,
     /// One line per number.
     Csv,
+}
+
+/// The axes of the complex plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PlaneAxes {
+    /// Linear.
+    Linear,
+    /// Logarithmic with a sign, and linear about zero.
+    Symlog,
+}
+
+impl From<PlaneAxes> for Axes {
+    fn from(axes: PlaneAxes) -> Axes {
+        match axes {
+            PlaneAxes::Linear => Axes::Linear,
+            PlaneAxes::Symlog => Axes::Symlog,
+        }
+    }
 }
 
 /// Arguments of `pc linearize`.
@@ -52,9 +71,12 @@ pub struct LinearizeArguments {
     /// Write the matrices, or with --vary the table of eigenvalues, to FILE.json, FILE.csv, FILE.npz or FILE.mat
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// With --vary: draw the real and imaginary parts of the eigenvalues to FILE.svg or FILE.png
+    /// With --vary: draw the eigenvalues in the complex plane, and their real and imaginary parts, to FILE.svg, FILE.png or FILE.pdf
     #[arg(long, value_name = "FILE", requires = "vary")]
     pub plot: Option<PathBuf>,
+    /// With --plot: the axes of the complex plane; symlog shows eigenvalues of very different sizes
+    #[arg(long, value_name = "SCALE", default_value = "linear", requires = "plot")]
+    pub axes: PlaneAxes,
     /// Verification.
     #[command(flatten)]
     pub verify: VerifyArguments,

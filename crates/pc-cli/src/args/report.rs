@@ -41,7 +41,8 @@ pub struct ShownArguments {
                         pc report my-model.toml --t-end 20 --set m=2.5 -o report.html\n  \
                         pc models heavy-top-euler | pc report - --no-run > top.html\n\n\
                         The page needs nothing beside itself: no network and no other file; it is read without scripts, by which \
-                        the motion can be watched. The same model gives the same bytes. Without an end of time there is no \
+                        the motion can be watched. What would take more than seconds is left out, and the page says which command does it: \
+                        --full derives it here. The same model gives the same bytes. Without an end of time there is no \
                         motion. What was reached of one that fails stands on the page, and the exit code is that of `pc run`.")]
 pub struct ReportArguments {
     /// The motion.
@@ -50,6 +51,9 @@ pub struct ReportArguments {
     /// Leave out the motion
     #[arg(long, conflicts_with_all = ["t_end", "rows", "form", "project"])]
     pub no_run: bool,
+    /// Derive everything, however long it takes: theory, further forms, and the second derivation at 100 states in every form
+    #[arg(long)]
+    pub full: bool,
     /// Write the page to FILE.html instead of standard output
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,

@@ -50,7 +50,7 @@ fn locus(arguments: &LinearizeArguments, vary: &Vary, file: Option<&TableFile>) 
     let verify = !arguments.verify.no_verify;
     let locus = Locus::of(&model, vary, &arguments.state.choice(), verify, &Terminal)?;
     if let Some(picture) = picture {
-        picture.write_plot(&locus.picture().drawing())?;
+        picture.write_plot(&locus.picture(arguments.axes.into()).drawing())?;
     }
     match (file, arguments.format) {
         (Some(file), _) => Ok(locus.write(file)?),

@@ -26,7 +26,13 @@ pub fn command(arguments: &MergeArguments) -> Result<(), CliError> {
     let shards = Shards::open(&arguments.shards)?;
     output::write(&file, &shards.title, &shards.sweep_columns, &shards)?;
     if let Some(place) = picture {
-        draw(&place, &shards.title, (&shards.sweep_columns, &shards), &arguments.columns, shards.is_random)?;
+        draw(
+            &place,
+            (&shards.title, &[]),
+            (&shards.sweep_columns, &shards),
+            &arguments.columns,
+            shards.is_random,
+        )?;
     }
     let tally = shards.tally();
     let mut said = format!("{}\n", one_line(&shards.title));

@@ -2,7 +2,7 @@
 
 use pc_model::{Assembly, Model};
 use pc_report::files::{nearest, stills};
-use pc_report::{Recording, Scene, animation, report};
+use pc_report::{Page, Recording, ReportError, Scene, animation, report};
 use pc_run::Plan;
 use pc_run::RunError;
 use pc_run::Wishes;
@@ -14,6 +14,7 @@ use crate::args::report::{AnimateArguments, ReportArguments, ShownArguments};
 use crate::error::CliError;
 use crate::output::destination::{Destination, Encoding};
 use crate::terminal::observer::Terminal;
+use crate::terminal::progress_of_parts::Progress;
 
 /// Points with which a curve looks smooth.
 const SMOOTH: usize = 601;
@@ -29,7 +30,7 @@ pub fn command(arguments: &ReportArguments) -> Result<(), CliError> {
     let model = input::open(&arguments.shown.model)?;
     input::keep_apart(&arguments.shown.model, &model, [arguments.output.as_deref()])?;
     if arguments.no_run {
-        let page = model.derived(|assembly| report(&model, assembly, None))?;
+        let page = model.derived(|assembly| made(arguments.full, &model, assembly, None))?;
         return destination.write_page(&page);
     }
     let mut model = kept(model, &arguments.shown)?;
@@ -46,8 +47,19 @@ pub fn command(arguments: &ReportArguments) -> Result<(), CliError> {
         Some(run) => destination.for_run(run),
         None => destination,
     };
-    destination.write_page(&report(&model, &assembly, Some(&record))?)?;
+    destination.write_page(&made(arguments.full, &model, &assembly, Some(&record))?)?;
     Ok(run.map_or(Ok(()), Run::outcome)?)
+}
+
+/// The page, with progress on a terminal.
+fn made(
+    full: bool,
+    model: &Model,
+    assembly: &Assembly<'_>,
+    motion: Option<&Recording>,
+) -> Result<String, ReportError> {
+    let progress = Progress::new();
+    Page { full, part: &|part| progress.at(part) }.of(model, assembly, motion)
 }
 
 const NO_END: &str = "There is no motion: the text says no end of time, and --t-end was not given.";

@@ -54,7 +54,8 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     }
     output::write(&file, sweep.title(), sweep.sweep_columns(), &journal)?;
     let drawn = place.map(|place| {
-        draw(&place, sweep.title(), (sweep.sweep_columns(), &journal), &arguments.columns, sweep.is_random())
+        let said = (sweep.title(), sweep.units());
+        draw(&place, said, (sweep.sweep_columns(), &journal), &arguments.columns, sweep.is_random())
     });
     journal.remove()?;
     text::say(format_args!("{said}"));
@@ -68,12 +69,13 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
 /// [`SweepError::Drawn`], or that of the file.
 pub(super) fn draw(
     place: &Destination,
-    title: &str,
+    (title, units): (&str, &[(String, String)]),
     (sweep_columns, members): (&SweepColumns, &dyn Records),
     columns: &[String],
     is_random: bool,
 ) -> Result<(), CliError> {
-    place.write_plot(&picture::picture(title, sweep_columns, members, columns, is_random)?.drawing())
+    let picture = picture::picture(title, sweep_columns, members, columns, is_random)?;
+    place.write_plot(&picture.in_units(units).drawing())
 }
 
 /// An error where no member was completed.

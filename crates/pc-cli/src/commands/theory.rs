@@ -32,6 +32,7 @@ pub fn command(arguments: &TheoryArguments) -> Result<(), CliError> {
         degree: arguments.degree,
         functions: arguments.functions.clone(),
         canonical: canonical.collect(),
+        ..TheoryOptions::default()
     };
     let page = Theory::of(&model, &assembly, &options)?.printed(arguments.format.into());
     if !arguments.verify.no_verify {

@@ -8,17 +8,20 @@ pub(super) fn names(model: &Model) -> Value {
     let parameters: Vec<Value> = model
         .parameters()
         .filter(|(_, value)| value.is_finite())
-        .map(|(name, value)| named(name, value))
+        .map(|(name, value)| named(model, name, value))
         .collect();
     let starts: Vec<Value> = match model.start() {
         Ok(values) => {
-            model.start_names().iter().zip(values).map(|(name, value)| named(name, value)).collect()
+            model.start_names().iter().zip(values).map(|(name, value)| named(model, name, value)).collect()
         }
         Err(_) => Vec::new(), // the error is told where the equations are derived
     };
     json!({ "kind": "names", "parameters": parameters, "starts": starts })
 }
 
-fn named(name: &str, value: f64) -> Value {
-    json!({ "name": name, "value": value })
+fn named(model: &Model, name: &str, value: f64) -> Value {
+    match model.document().unit(name) {
+        Some(unit) => json!({ "name": name, "value": value, "unit": unit }),
+        None => json!({ "name": name, "value": value }),
+    }
 }

@@ -244,9 +244,26 @@ fn files_contain_the_same_numbers() {
     assert_eq!(table.lines().count(), 4);
     assert!(!locus("b.npz").is_empty() && !locus("b.mat").is_empty());
     let picture = fs::read_to_string(directory.path().join("a.svg")).expect("a picture");
-    for word in ["Re λ", "Im λ", "Pole on a cart"] {
+    let words =
+        ["Re λ", "Im λ", "Pole on a cart", "in the complex plane", "<title>λ1, mostly", "the present 0.8"];
+    for word in words {
         assert!(picture.contains(word), "{word}");
     }
+    let symlog = [
+        "linearize",
+        "model.toml",
+        "--vary",
+        "l=0.5:1:3",
+        "--plot",
+        "b.svg",
+        "--axes",
+        "symlog",
+        "-o",
+        "c.csv",
+    ];
+    assert_eq!(run(&symlog, directory.path()).status.code(), Some(0));
+    let other = fs::read_to_string(directory.path().join("b.svg")).expect("a picture");
+    assert!(other.contains("10⁰") && other != picture);
 }
 
 #[test]

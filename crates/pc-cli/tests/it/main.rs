@@ -40,6 +40,7 @@ mod live_in_a_browser;
 mod long_equations;
 mod methods;
 mod models;
+mod named_units;
 mod new;
 mod numbers;
 mod oblique_axes;

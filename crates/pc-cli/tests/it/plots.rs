@@ -303,7 +303,11 @@ fn sweeps_are_drawn_by_the_varied_quantities() {
     );
     assert_eq!(lines(&svg, EVENT).len(), 5, "quantiles");
     let svg = sweep(&["--members", "50", "--random", "k=normal(30,1)", "--columns", "x", "--rows", "20"]);
-    assert!(texts(&svg).contains(&"median".to_owned()));
+    for name in ["5 % to 95 %", "25 % to 75 %", "median"] {
+        assert!(texts(&svg).contains(&name.to_owned()), "{name}");
+    }
+    assert_eq!(svg.matches("Z\" fill=").count(), 2, "two bands");
+    assert_eq!(lines(&svg, FIRST).len(), 1, "one curve");
     let svg = sweep(&["--vary", "k=1:9:3", "--columns", "x", "--rows", "20"]);
     assert!(texts(&svg).contains(&"k = 5".to_owned()), "{:?}", texts(&svg));
     let refused = |options: &[&str], mention: &str| {

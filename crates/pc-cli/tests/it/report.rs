@@ -86,6 +86,20 @@ fn the_page_of_a_platform_on_six_legs_is_not_too_long() {
     parsed(&page);
 }
 
+/// What takes long is left to other commands, which the page names, unless everything is asked for.
+#[test]
+fn a_page_is_brief_unless_it_is_full() {
+    let page = |model: &str, options: &[&str]| text(pc(&[&["report", model, "--no-run"], options].concat()));
+    let briefly = "looked for briefly; pc theory looks further";
+    let (brief, full) = (page("chaplygin-sleigh", &[]), page("chaplygin-sleigh", &["--full"]));
+    assert!(brief.contains(briefly) && brief.contains("at 32 states"), "{brief}");
+    assert!(!full.contains(briefly) && full.contains("at 100 states"), "{full}");
+    let long = page("puma-560", &[]);
+    for left in ["left to pc theory", "pc derive --form canonical", "pc check finds them"] {
+        assert!(long.contains(left), "{left}");
+    }
+}
+
 /// Numbers in base 64, as the script of the page reads them.
 fn numbers(text: &str) -> Vec<f32> {
     let digit = |c: u8| match c {

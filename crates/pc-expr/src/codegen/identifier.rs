@@ -9,7 +9,13 @@ const GREEK: [&str; 25] = [
     "nu", "xi", "omicron", "pi", "rho", "sigma", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega",
 ];
 
-fn greek(letter: char) -> Option<String> {
+/// The name of a Greek letter in Latin ones, with a capital for a capital letter.
+///
+/// ```
+/// assert_eq!(pc_expr::greek('Θ').as_deref(), Some("Theta"));
+/// assert_eq!(pc_expr::greek('x'), None);
+/// ```
+pub fn greek(letter: char) -> Option<String> {
     let name = |c: char, first: char| GREEK.get((c as usize).checked_sub(first as usize)?).copied();
     match letter {
         'α'..='ω' => name(letter, 'α').map(str::to_owned),

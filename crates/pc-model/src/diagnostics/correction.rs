@@ -57,6 +57,11 @@ impl MeaningError {
             MeaningError::UnknownComponent { name, known } => {
                 suggest(name, known, &format!("the components are {}", listed(known)))
             }
+            MeaningError::NoQuantity { name, known } => suggest(
+                name,
+                known,
+                "a unit belongs to a declared name, to a velocity `x'`, to `t` or to `energy`",
+            ),
             MeaningError::UnknownIntegral { name, known } => {
                 suggest(name, known, &format!("the integrals are {}", listed(known)))
             }

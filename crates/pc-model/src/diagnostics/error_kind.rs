@@ -382,6 +382,7 @@ pub(crate) const SECTIONS: &[&str] = &[
     "forces",
     "integrals",
     "outputs",
+    "units",
     "draw",
     "hamilton_jacobi",
     "events",

@@ -521,6 +521,14 @@ pub enum MeaningError {
         /// The coordinates, the quasi-velocities or velocities, and the first-order states.
         known: Vec<String>,
     },
+    /// A unit for something that the model does not have.
+    #[error("`{name}` is not a quantity of the model")]
+    NoQuantity {
+        /// The name.
+        name: String,
+        /// The names that may have a unit.
+        known: Vec<String>,
+    },
     /// A name that was requested as an integral to be kept but is not an integral of the model.
     #[error("`{name}` is not an integral")]
     UnknownIntegral {

@@ -1,32 +1,6 @@
 //! Names as other notations write them: `theta_dot` for `θ'`.
 
-/// The Greek letters that names may contain, by the words that other programs use for them.
-const LETTERS: [(char, &str); 24] = [
-    ('α', "alpha"),
-    ('β', "beta"),
-    ('γ', "gamma"),
-    ('δ', "delta"),
-    ('ε', "epsilon"),
-    ('ζ', "zeta"),
-    ('η', "eta"),
-    ('θ', "theta"),
-    ('ι', "iota"),
-    ('κ', "kappa"),
-    ('λ', "lambda"),
-    ('μ', "mu"),
-    ('ν', "nu"),
-    ('ξ', "xi"),
-    ('ο', "omicron"),
-    ('π', "pi"),
-    ('ρ', "rho"),
-    ('σ', "sigma"),
-    ('τ', "tau"),
-    ('υ', "upsilon"),
-    ('φ', "phi"),
-    ('χ', "chi"),
-    ('ψ', "psi"),
-    ('ω', "omega"),
-];
+use pc_expr::greek;
 
 /// The one of the `known` names that `word` means in another notation: Greek letters by their names, and a rate by a `dot`
 /// after it or a `d` before it.
@@ -41,19 +15,8 @@ pub(crate) fn meant<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) ->
 
 /// A name in Latin letters and digits.
 fn spelled(name: &str) -> String {
-    let mut spelled = String::with_capacity(name.len());
-    for c in name.chars().filter(|&c| c != '_') {
-        let small = c.to_lowercase().next().unwrap_or(c);
-        match LETTERS.iter().find(|(letter, _)| *letter == small) {
-            Some((_, word)) if c == small => spelled += word,
-            Some((_, word)) => {
-                spelled += &word[..1].to_uppercase();
-                spelled += &word[1..];
-            }
-            None => spelled.push(c),
-        }
-    }
-    spelled
+    let letter = |c: char| greek(c).unwrap_or_else(|| c.to_string());
+    name.chars().filter(|&c| c != '_').map(letter).collect()
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use crate::document::expression::{Expression, Located, Name, NamedExpression};
 use crate::document::inertia::Inertia;
 use crate::document::joints::{Point, TreeBody};
 use crate::document::run_settings::Simulation;
+use crate::document::units::NamedUnit;
 
 /// A model as written. Every list is in the order of the file.
 #[derive(Clone, Debug, Default)]
@@ -64,6 +65,8 @@ pub struct Document {
     pub integrals: Vec<NamedExpression>,
     /// `[outputs]`, then the coordinates of joints that follow others, then the forces of contacts.
     pub outputs: Vec<NamedExpression>,
+    /// `[units]`
+    pub units: Vec<NamedUnit>,
     /// `[[draw]]`
     pub draw: Vec<Draw>,
     /// `[hamilton_jacobi]`

@@ -18,7 +18,7 @@ use crate::document::contents::Document;
 use crate::document::loops::{self, Loop};
 use crate::document::reader::{Item, Table};
 use crate::document::{
-    bodies, checks, contacts, draw, functions, hanging, inputs, sections, simulation, syntax, tree,
+    bodies, checks, contacts, draw, functions, hanging, inputs, sections, simulation, syntax, tree, units,
 };
 
 impl Document {
@@ -46,6 +46,7 @@ impl Document {
         checks::require_energy(&document)?;
         checks::require_bodies(&document)?;
         checks::check_tolerances(&document)?;
+        units::check_units(&document)?;
         Ok(document)
     }
 
@@ -94,6 +95,7 @@ impl Document {
             "forces" => self.forces = table.on_velocities()?,
             "integrals" => self.integrals = table.declarations()?,
             "outputs" => self.outputs = table.declarations()?,
+            "units" => self.units = units::units(&table)?,
             "hamilton_jacobi" => self.hamilton_jacobi = Some(sections::hamilton_jacobi(&table)?),
             "events" => self.events = simulation::events(&table)?,
             _ => self.simulation = simulation::simulation(&table)?,

@@ -104,6 +104,9 @@ fn energy_of_all<'g>(assembly: &Assembly<'g>, equations: &Equations<'g>) -> Opti
     Some(graph.substitute(&[assembly.system.energy()], &known)[0])
 }
 
+/// The largest number of functions with unknown coefficients in a brief search, which takes a few tenths of a second.
+const MOST_BRIEFLY: usize = 150;
+
 /// The integrals that the theory lists, with those found by the ansatz at the end, and the extent of the
 /// search.
 pub(crate) fn found<'g>(
@@ -116,7 +119,9 @@ pub(crate) fn found<'g>(
     let functions: Result<Vec<Expr<'g>>, ModelError> =
         texts.map(|text| model.function(assembly, text)).collect();
     let mut integrals = integrals_of(assembly, &ground.equations, &ground.near, false);
-    let ansatz = PolynomialAnsatz { degree: options.degree, functions: functions? };
+    let usual = PolynomialAnsatz::of_degree(options.degree);
+    let most = options.extent.either(usual.most, MOST_BRIEFLY);
+    let ansatz = PolynomialAnsatz { functions: functions?, most, ..usual };
     let made = ground.placed(integrals.add_polynomials(&ground.equations, &ground.near, &ansatz))?;
     drop_constraints(&mut integrals, assembly, &ground.equations);
     say_what_jumps(&mut integrals, assembly);

@@ -1,5 +1,7 @@
 //! Options of the theory.
 
+use crate::theory::extent::Extent;
+
 /// Options of the theory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TheoryOptions {
@@ -11,11 +13,13 @@ pub struct TheoryOptions {
     /// Functions that are tested as canonical variables: new coordinates with their names, then as many new momenta, in the
     /// language of the model, with the momenta `p_x` as names besides the velocities.
     pub canonical: Vec<(String, String)>,
+    /// How far the searches go.
+    pub extent: Extent,
 }
 
 impl Default for TheoryOptions {
     /// The default options: degree 2, no functions, no new variables.
     fn default() -> TheoryOptions {
-        TheoryOptions { degree: 2, functions: Vec::new(), canonical: Vec::new() }
+        TheoryOptions { degree: 2, functions: Vec::new(), canonical: Vec::new(), extent: Extent::Full }
     }
 }

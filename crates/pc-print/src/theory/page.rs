@@ -55,7 +55,7 @@ impl<'g> Theory<'g> {
             measure::section(&ground)?,
             measure::multiplier(&ground),
             action::section(&ground),
-            steady::section(&ground, &found.0)?,
+            steady::section(&ground, &found.0, options.extent)?,
             routh::section(&ground)?,
         ];
         Theory::written(model, assembly, sections)

@@ -8,11 +8,15 @@ use pc_model::ModelError;
 
 use crate::theory::basis::Basis;
 use crate::theory::description::{Entry, Section, Verdict};
+use crate::theory::extent::Extent;
 use crate::theory::linear_model::LinearModel;
 use crate::words::words::short;
 
 /// Numbers up to this size count as zero: Newton's method leaves such remainders in place of zeros.
 const ZERO: f64 = 1e-9;
+
+/// The number of starts of each kind in a brief search.
+const STARTS_BRIEFLY: usize = 8;
 
 /// The largest number of members of families that are listed.
 const MOST_LISTED: usize = 8;
@@ -25,6 +29,7 @@ const DECISIVE: f64 = 1e-6;
 pub(crate) fn section<'g>(
     ground: &Basis<'_, 'g>,
     integrals: &Integrals<'g>,
+    extent: Extent,
 ) -> Result<Section<'g>, ModelError> {
     let section =
         |entries| Ok(Section { key: "steady_motions", title: "Steady motions", names: Vec::new(), entries });
@@ -41,8 +46,8 @@ pub(crate) fn section<'g>(
     let mut motion = assembly.placed(equations.compile())?;
     let start = assembly.start_of(&equations.system().state());
     let at = (assembly.t_start, start.as_slice());
-    let found =
-        SteadyMotions::search(equations, &mut motion, at, integrals.list(), &assembly.held_positions());
+    let (positions, most) = (assembly.held_positions(), extent.either(usize::MAX, STARTS_BRIEFLY));
+    let found = SteadyMotions::search(equations, &mut motion, at, integrals.list(), &positions, most);
     section(match found {
         Ok(found) => {
             let mut judge = Judge::new(ground, integrals);

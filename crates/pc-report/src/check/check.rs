@@ -5,7 +5,8 @@ use pc_mech::{Equations, Expr, Identity, MechError, Neighbourhood, System, Vecto
 use pc_model::{Assembly, ClassifiedConstraint, Model, ModelError};
 use pc_nonholo::{ConstraintKind, IntegrableCombination, Redundant};
 use pc_print::{
-    Operations, assignments, columns, integrals_of, kind_in_words, labelled, one_line, short, small, wrapped,
+    Extent, Operations, assignments, columns, integrals_of, kind_in_words, labelled, one_line, short, small,
+    wrapped,
 };
 use pc_verify::{Agreement, VerifyError};
 use serde_json::{Value, json};
@@ -14,6 +15,10 @@ use crate::check::measure::Measure;
 use crate::check::steady::SteadyFinding;
 use crate::check::{agreement, combinations, frame, integrals, steady};
 use crate::remarks::{NEGATIVE_ENERGY, changing_masses, dropped};
+
+/// The number of operations of one right-hand side beyond which equations are too long for the analyses of a brief check: these
+/// take a second for so many.
+pub(crate) const LONG: usize = 600;
 
 /// The properties of a model before it is run.
 #[derive(Clone, Debug)]
@@ -50,7 +55,8 @@ pub struct Check<'g> {
     combinations: Vec<IntegrableCombination<'g>>,
     start_residual: f64,
     pub(super) integrals: Integrals<'g>,
-    measure: Measure<'g>,
+    /// None if the equations are too long to look for it.
+    measure: Option<Measure<'g>>,
     pub(super) steady: SteadyFinding,
     operations: Operations,
     pub(super) second: Option<Result<Agreement, VerifyError>>,
@@ -66,9 +72,31 @@ impl<'g> Check<'g> {
         assembly: &Assembly<'g>,
         equations: &Equations<'g>,
     ) -> Result<Check<'g>, ModelError> {
+        Check::within(model, assembly, equations, |_| Extent::Full)
+    }
+
+    /// The properties of an assembled model; those of [long](LONG) equations without integrals, invariant measure and steady motion.
+    ///
+    /// # Errors
+    /// As for [`new`](Check::new).
+    pub(crate) fn brief(
+        model: &Model,
+        assembly: &Assembly<'g>,
+        equations: &Equations<'g>,
+    ) -> Result<Check<'g>, ModelError> {
+        Check::within(model, assembly, equations, |operations| Extent::Brief { operations })
+    }
+
+    fn within(
+        model: &Model,
+        assembly: &Assembly<'g>,
+        equations: &Equations<'g>,
+        extent: impl FnOnce(usize) -> Extent,
+    ) -> Result<Check<'g>, ModelError> {
         let system = &assembly.system;
         let (frame, structure, graph) = (system.frame(), system.structure(), system.graph());
         let operations = assembly.placed(Operations::of(equations).map_err(MechError::from))?;
+        let is_short = extent(operations.free.total()).allows(LONG);
         let names = |symbols: &[Expr<'_>]| symbols.iter().map(Expr::to_string).collect::<Vec<_>>();
 
         let (mut motion, start) = model.compile(assembly)?;
@@ -83,7 +111,10 @@ impl<'g> Check<'g> {
         centre.extend(state.zip(assembly.start.iter().copied()));
         let near = Neighbourhood { centre };
 
-        let integrals = integrals_of(assembly, equations, &near, true);
+        let integrals = match is_short {
+            true => integrals_of(assembly, equations, &near, true),
+            false => Integrals::default(),
+        };
         Ok(Check {
             title: model.title().to_owned(),
             coordinates: names(frame.coordinates()),
@@ -112,8 +143,11 @@ impl<'g> Check<'g> {
             integrable_combinations: assembly.constraints.integrable_combinations(),
             combinations: assembly.placed(assembly.constraints.combinations_found(&assembly.at_start()))?,
             start_residual: start_residual(assembly, &near),
-            measure: Measure::of(assembly, &near.centre),
-            steady: steady::near_start(assembly, equations, &integrals),
+            measure: is_short.then(|| Measure::of(assembly, &near.centre)),
+            steady: match is_short {
+                true => steady::near_start(assembly, equations, &integrals),
+                false => SteadyFinding::TooLong,
+            },
             integrals,
             operations,
             second: None,
@@ -123,6 +157,11 @@ impl<'g> Check<'g> {
     /// The properties, together with the result of the comparison with a second derivation.
     pub fn compared(self, second: Result<Agreement, VerifyError>) -> Check<'g> {
         Check { second: Some(second), ..self }
+    }
+
+    /// The number of operations of one right-hand side, with parameters as inputs.
+    pub(crate) fn operations(&self) -> usize {
+        self.operations.free.total()
     }
 
     /// The linear theory of the steady motion near the start, if one was found.
@@ -186,8 +225,16 @@ impl<'g> Check<'g> {
             );
         }
         entries.push(("integrals", kept));
-        entries.push(("invariant measure", self.measure.lines()));
-        entries.push(("steady motion", steady::lines(&self.steady, WIDTH)));
+        match &self.measure {
+            Some(measure) => {
+                entries.push(("invariant measure", measure.lines()));
+                entries.push(("steady motion", steady::lines(&self.steady, WIDTH)));
+            }
+            None => entries.push((
+                "not looked for",
+                vec!["integrals, invariant measure and steady motion, since the equations are long; pc check finds them".to_owned()],
+            )),
+        }
         entries.retain(|(_, lines)| !lines.is_empty());
         entries
     }
@@ -252,7 +299,7 @@ impl<'g> Check<'g> {
             "changing_masses": self.changing_masses,
             "start_residual": self.start_residual,
             "integrals": integrals,
-            "invariant_measure": self.measure.object(),
+            "invariant_measure": self.measure.as_ref().map(Measure::object),
             "steady_motion": steady::object(&self.steady),
             "second_derivation": self.second.as_ref().map(agreement::object),
         })

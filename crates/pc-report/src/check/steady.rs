@@ -23,6 +23,8 @@ pub(super) enum SteadyFinding {
     TooLarge {
         components: usize,
     },
+    /// The equations are long.
+    TooLong,
     None,
     Found(Box<NearbySteadyMotion>),
 }
@@ -175,6 +177,7 @@ fn missing(found: &SteadyFinding) -> Option<String> {
         SteadyFinding::TooLarge { components } => {
             format!("not looked for: {components} components of the state are too many")
         }
+        SteadyFinding::TooLong => "not looked for: the equations are long".to_owned(),
         SteadyFinding::None => "none found near the start".to_owned(),
         SteadyFinding::Found(_) => return None,
     })

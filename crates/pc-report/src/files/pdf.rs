@@ -43,18 +43,23 @@ pub fn pdf(drawing: &Drawing) -> Result<Vec<u8>, PictureError> {
 /// The content stream of the page, with y pointing down.
 fn content(drawing: &Drawing, fonts: &mut Fonts<'_>) -> String {
     let mut content = format!("1 0 0 -1 0 {} cm 1 j\n", drawing.height);
-    for shape in &drawing.shapes {
+    add_all(&mut content, &drawing.shapes, fonts);
+    content
+}
+
+fn add_all(content: &mut String, shapes: &[Shape], fonts: &mut Fonts<'_>) {
+    for shape in shapes {
         match shape {
             Shape::Line { points, ink } => {
                 let dash = ink.dash().map_or("[]".to_owned(), |[dash, gap]| format!("[{dash} {gap}]"));
-                add(&mut content, format_args!("{} RG {} w {dash} 0 d\n", colour(*ink), ink.width()));
+                add(content, format_args!("{} RG {} w {dash} 0 d\n", colour(*ink), ink.width()));
                 for (i, [x, y]) in points.iter().enumerate() {
-                    add(&mut content, format_args!("{x:.2} {y:.2} {}\n", if i == 0 { "m" } else { "l" }));
+                    add(content, format_args!("{x:.2} {y:.2} {}\n", if i == 0 { "m" } else { "l" }));
                 }
-                content += "S\n";
+                content.push_str("S\n");
             }
             Shape::Area { from, to, ink } => add(
-                &mut content,
+                content,
                 format_args!(
                     "{} rg {:.2} {:.2} {:.2} {:.2} re f\n",
                     colour(*ink),
@@ -65,30 +70,30 @@ fn content(drawing: &Drawing, fonts: &mut Fonts<'_>) -> String {
                 ),
             ),
             Shape::Filled { corners, ink } => {
-                add(&mut content, format_args!("{} rg\n", colour(*ink)));
+                add(content, format_args!("{} rg\n", colour(*ink)));
                 for (i, [x, y]) in corners.iter().enumerate() {
-                    add(&mut content, format_args!("{x:.2} {y:.2} {}\n", if i == 0 { "m" } else { "l" }));
+                    add(content, format_args!("{x:.2} {y:.2} {}\n", if i == 0 { "m" } else { "l" }));
                 }
-                content += "f\n";
+                content.push_str("f\n");
             }
+            Shape::Titled { shapes, .. } => add_all(content, shapes, fonts),
             Shape::Text { at, anchor, size, ink, text } => {
                 let placed = fonts.glyphs.placed(text, *anchor);
                 let start = placed.first().map_or(0.0, |first| first.x) * size / fonts.glyphs.units();
                 add(
-                    &mut content,
+                    content,
                     format_args!("BT {} rg 1 0 0 -1 {:.2} {:.2} Tm\n", colour(*ink), at[0] + start, at[1]),
                 );
                 let codes: Vec<(usize, usize)> =
                     placed.iter().map(|glyph| fonts.code(glyph.glyph, glyph.character)).collect();
                 for run in codes.chunk_by(|a, b| a.0 == b.0) {
                     let shown: String = run.iter().map(|(_, code)| format!("{code:02x}")).collect();
-                    add(&mut content, format_args!("/F{} {size} Tf <{shown}> Tj\n", run[0].0));
+                    add(content, format_args!("/F{} {size} Tf <{shown}> Tj\n", run[0].0));
                 }
-                content += "ET\n";
+                content.push_str("ET\n");
             }
         }
     }
-    content
 }
 
 fn colour(ink: Ink) -> String {

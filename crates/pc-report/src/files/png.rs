@@ -34,7 +34,12 @@ pub(super) fn painted(
     let mut pixels = Pixmap::new(width, height).ok_or(PictureError::Size { width, height })?;
     pixels.fill(tiny_skia::Color::WHITE);
     let scale = Transform::from_scale(magnification, magnification);
-    for shape in &drawing.shapes {
+    paint_all(&mut pixels, &drawing.shapes, scale, glyphs);
+    Ok(pixels)
+}
+
+fn paint_all(pixels: &mut Pixmap, shapes: &[Shape], scale: Transform, glyphs: &Glyphs) {
+    for shape in shapes {
         match shape {
             Shape::Line { points, ink } => {
                 let Some(path) = path(points).finish() else { continue };
@@ -54,6 +59,7 @@ pub(super) fn painted(
                 let Some(path) = path.finish() else { continue };
                 pixels.fill_path(&path, &paint(*ink), FillRule::Winding, scale, None);
             }
+            Shape::Titled { shapes, .. } => paint_all(pixels, shapes, scale, glyphs),
             Shape::Text { at, anchor, size, ink, text } => {
                 let unit = size / glyphs.units();
                 for glyph in glyphs.placed(text, *anchor) {
@@ -74,7 +80,6 @@ pub(super) fn painted(
             }
         }
     }
-    Ok(pixels)
 }
 
 fn path(points: &[[f64; 2]]) -> PathBuilder {

@@ -1,16 +1,29 @@
 //! The equations of motion in every form that applies.
 
 use pc_model::{Assembly, ModelError, Variables};
-use pc_print::{DisplayedEquations, Form, Layout, displayed_equations};
+use pc_print::{DisplayedEquations, Extent, Form, Layout, displayed_equations};
 
 use crate::page::formulas;
 use crate::page::html::{lines, paragraph, text};
+
+/// The number of operations of one right-hand side beyond which further forms take more than a second to derive, and that beyond
+/// which Poincaré's equations do.
+const MOST_IN_FORMS: usize = 300;
+pub(super) const MOST_OPERATIONS: usize = 2500;
 
 /// Equations that take more bytes than this are left to `pc derive`, so that a page is not too long.
 const LONGEST: usize = 120_000;
 
 /// Poincaré's equations, followed by the other forms.
-pub(super) fn equations(title: &str, assembly: &Assembly<'_>, layout: &Layout) -> Result<String, ModelError> {
+pub(super) fn equations(
+    title: &str,
+    assembly: &Assembly<'_>,
+    layout: &Layout,
+    extent: Extent,
+) -> Result<String, ModelError> {
+    if !extent.allows(MOST_OPERATIONS) {
+        return Ok(paragraph("The equations are too long to be shown here; pc derive prints them."));
+    }
     let first = displayed_equations(Form::Poincare, layout, title, assembly)?;
     let (mut shown, mut long, mut refused) = (String::new(), Vec::new(), Vec::new());
     let mut show = |equations: &DisplayedEquations, form: Form| match self::form(equations) {
@@ -18,7 +31,11 @@ pub(super) fn equations(title: &str, assembly: &Assembly<'_>, layout: &Layout) -
         None => long.push(format!("{} (pc derive --form {})", equations.name, form.name())),
     };
     show(&first, Form::Poincare);
-    for other in others(assembly) {
+    let (derived, left) = match extent.allows(MOST_IN_FORMS) {
+        true => (others(assembly), Vec::new()),
+        false => (Vec::new(), others(assembly)),
+    };
+    for other in derived {
         match displayed_equations(other, layout, title, assembly) {
             Ok(equations) => show(&equations, other),
             // An exhausted limit ends the work; a form that the model does not have is left out.
@@ -27,6 +44,13 @@ pub(super) fn equations(title: &str, assembly: &Assembly<'_>, layout: &Layout) -
                 Ok(()) => refused.push(format!("{}: {error}", other.name())),
             },
         }
+    }
+    if !left.is_empty() {
+        let all: Vec<String> = left.iter().map(|form| format!("pc derive --form {}", form.name())).collect();
+        shown += "<h3>Further forms</h3>\n";
+        let all = all.join(", ");
+        shown +=
+            &paragraph(&format!("They take long to derive, and are left to {all}, or pc report --full."));
     }
     if !long.is_empty() {
         let all = long.join(", ");

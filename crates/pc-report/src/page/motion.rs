@@ -54,9 +54,9 @@ pub(super) fn groups(record: &Recording, pairs: &[(String, String)]) -> Vec<Grou
     let mut group = |(heading, mut panels): (&'static str, Vec<Panel>)| {
         let left = panels.iter().skip(MOST_CHARTS).map(|panel| panel.names().len()).sum();
         panels.truncate(MOST_CHARTS);
-        let mut named = |panel| {
+        let mut named = |panel: Panel| {
             number += 1;
-            (format!("chart-{number}"), panel)
+            (format!("chart-{number}"), panel.in_units(&record.units))
         };
         Group { heading, panels: panels.into_iter().map(&mut named).collect(), left }
     };

@@ -1,11 +1,12 @@
 //! The page of a model.
 
 use pc_model::{Assembly, Model};
-use pc_print::{Layout, TheoryOptions, displayed_system, displayed_theory, short};
+use pc_print::{Extent, Layout, TheoryOptions, displayed_system, displayed_theory, short};
 use pc_verify::{Options, VerifyError, verify};
 
-use crate::check::check::Check;
+use crate::check::check::{Check, LONG};
 use crate::error::ReportError;
+use crate::page::equations::MOST_OPERATIONS;
 use crate::page::html::{Part, described, lines, page, paragraph, text};
 use crate::page::pairs::pairs;
 use crate::page::{equations, formulas, motion, player, theory};
@@ -14,11 +15,40 @@ use crate::scene::Scene;
 
 /// The width of a line of a formula, in columns.
 pub(super) const WIDTH: usize = 92;
+/// The number of states at which the second derivation of a brief page is compared, that for long equations, and that for those
+/// that are too long to be shown.
+const STATES: usize = 32;
+const STATES_OF_LONG: usize = 6;
+const STATES_OF_LONGEST: usize = 2;
+/// The number of operations up to which a brief page has every form compared with the second derivation.
+const SHORT: usize = 60;
 /// Texts with more lines than this are folded until they are opened.
 const LONG_TEXT: usize = 40;
 
-/// Everything that is known about an assembled model, and about its motion if there is one, as one page for a browser.
-/// The same model always results in the same bytes.
+/// How a page is made.
+#[derive(Clone, Copy)]
+pub struct Page<'a> {
+    /// Whether everything is derived, however long it takes: otherwise work that would take more than seconds is left out, as the
+    /// length of the equations tells, and the page says which command does it.
+    pub full: bool,
+    /// Hears which part is being made.
+    pub part: &'a dyn Fn(&'static str),
+}
+
+impl Default for Page<'_> {
+    fn default() -> Self {
+        Page { full: false, part: &|_| () }
+    }
+}
+
+impl std::fmt::Debug for Page<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Page").field("full", &self.full).finish_non_exhaustive()
+    }
+}
+
+/// Everything that is known about an assembled model, and about its motion if there is one, as one page for a browser, without
+/// what takes long. The same model always results in the same bytes.
 ///
 /// # Errors
 /// [`ReportError`] if the equations cannot be derived, or a second derivation disagrees with the first.
@@ -27,31 +57,89 @@ pub fn report(
     assembly: &Assembly<'_>,
     motion: Option<&Recording>,
 ) -> Result<String, ReportError> {
-    let equations = assembly.equations()?;
-    let check = Check::new(model, assembly, &equations)?;
-    let found = displayed_theory(model, assembly, &TheoryOptions::default())?;
-    let layout = Layout { width: WIDTH, ..Layout::default() };
-    let formulas = equations::equations(model.title(), assembly, &layout)?;
-    let system = formulas::parts(&displayed_system(assembly, &layout)?, 3);
-    let moved = motion.map(|record| moved(model, assembly, record)).transpose()?;
-    let second = match verify(model, assembly, &Options::default()) {
-        Err(error @ VerifyError::Disagreement(_)) => return Err(ReportError::Verify(Box::new(error))),
-        outcome => outcome,
-    };
-    assembly.within_limits()?;
-    let mut parts = vec![
-        Part::new("equations", "Equations of motion", formulas),
-        Part::new("verdicts", "Verdicts", described(&check.compared(second).entries())),
-        Part::new("system", "Frame and Lagrangian", system),
-        Part::new("theory", "Theory of the motions", theory::theory(&found)),
-        Part::new("text", "Text of the model", written(model)),
-    ];
-    if let (Some(moved), Some(record)) = (moved, motion) {
-        // A motion is seen at a glance; why there is none is not what the page is about.
-        let place = if record.curves().times.is_empty() { parts.len() - 1 } else { 0 };
-        parts.insert(place, Part::new("motion", "Motion", moved));
+    Page::default().of(model, assembly, motion)
+}
+
+impl Page<'_> {
+    /// As [`report`], in this way.
+    ///
+    /// # Errors
+    /// As for [`report`].
+    pub fn of(
+        &self,
+        model: &Model,
+        assembly: &Assembly<'_>,
+        motion: Option<&Recording>,
+    ) -> Result<String, ReportError> {
+        (self.part)("properties");
+        let equations = assembly.equations()?;
+        let check = match self.full {
+            true => Check::new(model, assembly, &equations)?,
+            false => Check::brief(model, assembly, &equations)?,
+        };
+        let extent = match self.full {
+            true => Extent::Full,
+            false => Extent::Brief { operations: check.operations() },
+        };
+        (self.part)("theory");
+        let theory = self.theory(model, assembly, extent)?;
+        (self.part)("forms of the equations");
+        let layout = Layout { width: WIDTH, ..Layout::default() };
+        let formulas = equations::equations(model.title(), assembly, &layout, extent)?;
+        let system = formulas::parts(&displayed_system(assembly, &layout)?, 3);
+        (self.part)("motion");
+        let moved = motion.map(|record| moved(model, assembly, record)).transpose()?;
+        (self.part)("second derivation");
+        let second = match verify(model, assembly, &self.compared(extent)) {
+            Err(error @ VerifyError::Disagreement(_)) => return Err(ReportError::Verify(Box::new(error))),
+            outcome => outcome,
+        };
+        assembly.within_limits()?;
+        let mut parts = vec![
+            Part::new("equations", "Equations of motion", formulas),
+            Part::new("verdicts", "Verdicts", described(&check.compared(second).entries())),
+            Part::new("system", "Frame and Lagrangian", system),
+            Part::new("theory", "Theory of the motions", theory),
+            Part::new("text", "Text of the model", written(model)),
+        ];
+        if let (Some(moved), Some(record)) = (moved, motion) {
+            // A motion is seen at a glance; why there is none is not what the page is about.
+            let place = if record.curves().times.is_empty() { parts.len() - 1 } else { 0 };
+            parts.insert(place, Part::new("motion", "Motion", moved));
+        }
+        Ok(page(model.title(), &(head(model, &parts) + &body(&parts))))
     }
-    Ok(page(model.title(), &(head(model, &parts) + &body(&parts))))
+
+    /// The part on the theory.
+    fn theory(&self, model: &Model, assembly: &Assembly<'_>, extent: Extent) -> Result<String, ReportError> {
+        if !extent.allows(LONG) {
+            return Ok(paragraph(
+                "The equations are long, and their theory is left to pc theory; pc report --full shows it here.",
+            ));
+        }
+        let options = TheoryOptions { extent, ..TheoryOptions::default() };
+        let mut shown = theory::theory(&displayed_theory(model, assembly, &options)?);
+        if !self.full {
+            shown += "<p class=\"soft\">Integrals and steady motions are looked for briefly; pc theory looks further.</p>\n";
+        }
+        Ok(shown)
+    }
+
+    /// How far the second derivation is compared.
+    fn compared(&self, extent: Extent) -> Options {
+        match self.full {
+            true => Options::default(),
+            false => Options {
+                states: match () {
+                    () if extent.allows(LONG) => STATES,
+                    () if extent.allows(MOST_OPERATIONS) => STATES_OF_LONG,
+                    () => STATES_OF_LONGEST,
+                },
+                every_form_up_to: SHORT,
+                ..Options::default()
+            },
+        }
+    }
 }
 
 /// The motion: the player, and the plots.
@@ -86,8 +174,13 @@ fn head(model: &Model, parts: &[Part]) -> String {
 /// The text of the model as it was read, with the present values of the parameters.
 fn written(model: &Model) -> String {
     let source = model.document().source.text();
-    let values: Vec<(String, Vec<String>)> =
-        model.parameters().map(|(name, value)| (name.to_owned(), vec![short(value, 10)])).collect();
+    let values: Vec<(String, Vec<String>)> = model
+        .parameters()
+        .map(|(name, value)| {
+            let unit = model.document().unit(name).map_or_else(String::new, |unit| format!(" {unit}"));
+            (name.to_owned(), vec![short(value, 10) + &unit])
+        })
+        .collect();
     let mut shown = String::new();
     if !values.is_empty() {
         shown += "<h3>Values of the parameters</h3>\n";

@@ -46,6 +46,22 @@ impl Axis {
         self.multiples(step, count)
     }
 
+    /// Zero, and powers of ten from 10ⁿ on, of either sign.
+    fn signed_decades(&self, n: i32, count: usize) -> Vec<(f64, String)> {
+        let scale = Scale::SignedDecades(n);
+        let step = round_step((self.high - self.low) / count as f64).max(1.0) as i32;
+        let most = self.low.abs().max(self.high.abs()).ceil().clamp(0.0, 400.0) as i32;
+        let powers = (0..=most).step_by(step.unsigned_abs() as usize).map(|more| n + more);
+        let places = powers.flat_map(|exponent| {
+            let place = scale.of(10f64.powi(exponent));
+            let label = power(f64::from(exponent));
+            [(-place, format!("−{label}")), (place, label)]
+        });
+        // 10ⁿ is near zero.
+        let all = [(0.0, "0".to_owned())].into_iter().chain(places.skip(2));
+        all.filter(|(place, _)| (self.low..=self.high).contains(place)).collect()
+    }
+
     fn multiples(&self, step: f64, count: usize) -> Vec<f64> {
         let first = (self.low / step).ceil() as i64;
         let last = (self.high / step).floor() as i64;
@@ -79,6 +95,7 @@ impl Axis {
                     (v, label)
                 })
                 .collect(),
+            Scale::SignedDecades(n) => self.signed_decades(n, count),
             // A few numbers to each power of ten.
             Scale::Decades if self.high - self.low < 2.5 => {
                 let powers = self.low.floor() as i32..=self.high.floor() as i32;
@@ -101,6 +118,7 @@ pub(crate) fn label(value: f64, scale: Scale) -> String {
     match scale {
         Scale::Linear | Scale::Angles => linear(value),
         Scale::Decades => power(value),
+        Scale::SignedDecades(n) => linear(value.signum() * 10f64.powi(n) * (10f64.powf(value.abs()) - 1.0)),
     }
 }
 
@@ -176,6 +194,7 @@ mod tests {
             ["10⁻¹²", "10⁻¹⁰", "10⁻⁸", "10⁻⁶", "10⁻⁴", "10⁻²", "10⁰"]
         );
         assert_eq!(labels(Scale::Decades, 0.0, 1.0), ["1", "2", "5", "10"]);
+        assert_eq!(labels(Scale::SignedDecades(-1), -2.1, 1.1), ["0", "10⁰", "−10⁰", "−10¹"]);
     }
 
     #[test]

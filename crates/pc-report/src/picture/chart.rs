@@ -27,10 +27,8 @@ pub(crate) fn figure(panel: &Panel, most: usize, id: &str) -> String {
     let (mut drawing, frame) = blank(panel);
     panel.draw(&mut drawing, frame, SIZE, most);
     let (span, values) = (panel.span_in_words(), panel.values_in_words());
-    let over = match panel.across.0.as_str() {
-        "t" => "over time",
-        _ => "to the right",
-    };
+    let is_time = panel.across.0 == "t" || panel.across.0.starts_with("t [");
+    let over = if is_time { "over time" } else { "to the right" };
     let names = panel.names().join(", ");
     let described =
         format!("{names}: {over} from {} to {}; values from {} to {}", span.0, span.1, values.0, values.1);
@@ -98,6 +96,10 @@ impl Panel {
                 Scale::Angles => ANGLES,
                 _ => widened(curves.iter().flat_map(|curve| curve.points.iter().map(|p| p.0))),
             },
+            (Content::Fan(fan), None) => widened(fan.across.iter().copied()),
+            (Content::Roots(roots), None) => {
+                widened(roots.iter().flat_map(|root| root.points.iter().map(|p| p.0)))
+            }
             (Content::Bars(bars), None) => widened(bars.iter().flat_map(|bar| [bar[0], bar[1]])),
             (Content::Cells { columns, .. }, None) => edge(columns),
         }
@@ -108,7 +110,7 @@ impl Panel {
             Content::Curves(curves) => {
                 let range = || widened(curves.iter().flat_map(|curve| curve.points.iter().map(|p| p.1)));
                 match self.up.1 {
-                    Scale::Linear => range(),
+                    Scale::Linear | Scale::SignedDecades(_) => range(),
                     Scale::Angles => ANGLES,
                     Scale::Decades => {
                         let (low, high) = range();
@@ -116,6 +118,8 @@ impl Panel {
                     }
                 }
             }
+            Content::Fan(fan) => widened(fan.values()),
+            Content::Roots(roots) => widened(roots.iter().flat_map(|root| root.points.iter().map(|p| p.1))),
             Content::Bars(bars) => {
                 (0.0, 1.05 * bars.iter().fold(f64::MIN_POSITIVE, |most, bar| most.max(bar[2])))
             }
@@ -153,11 +157,16 @@ impl Panel {
     pub(super) fn draw(&self, drawing: &mut Drawing, frame: Frame, size: f64, most: usize) {
         let frame = match self.content {
             Content::Cells { .. } => Frame { right: frame.right - LEGEND, ..frame },
-            Content::Curves(_) | Content::Bars(_) => frame,
+            Content::Curves(_) | Content::Fan(_) | Content::Roots(_) | Content::Bars(_) => frame,
         };
         let (across, up) = frame.axes(self);
-        if let Content::Cells { columns, rows, values } = &self.content {
-            cells(drawing, (&across, &up), (columns, rows, values), size, frame);
+        // Grid lines are drawn over areas.
+        match &self.content {
+            Content::Cells { columns, rows, values } => {
+                cells(drawing, (&across, &up), (columns, rows, values), size, frame);
+            }
+            Content::Fan(fan) => fan.shade(drawing, (&across, &up), most),
+            Content::Curves(_) | Content::Roots(_) | Content::Bars(_) => {}
         }
         self.mesh(drawing, frame, (&across, &up), size);
         // Bars are wide enough to hide event lines; curves are drawn over them.
@@ -169,6 +178,13 @@ impl Panel {
             Content::Curves(curves) => {
                 for (i, curve) in curves.iter().enumerate() {
                     draw_curve(drawing, curve, (&across, &up), Ink::Curve(i), most);
+                }
+            }
+            Content::Fan(fan) => draw_curve(drawing, &fan.middle, (&across, &up), Ink::Curve(0), most),
+            Content::Roots(roots) => {
+                axes_through_zero(drawing, frame, (&across, &up));
+                for (i, root) in roots.iter().enumerate() {
+                    root.draw(drawing, (&across, &up), Ink::Curve(i), most);
                 }
             }
             Content::Bars(bars) => {
@@ -232,6 +248,19 @@ const ANGLES: (f64, f64) = (-1.03 * std::f64::consts::PI, 1.03 * std::f64::const
 /// The number of labels that fit along a length if each takes up the length `each`; at least two.
 fn count(length: f64, each: f64) -> usize {
     ((length / each) as usize).max(2)
+}
+
+/// Draws the real and the imaginary axis.
+fn axes_through_zero(drawing: &mut Drawing, frame: Frame, (across, up): (&Axis, &Axis)) {
+    let is_within = |axis: &Axis| (axis.low..=axis.high).contains(&0.0);
+    if is_within(across) {
+        let x = across.place(0.0);
+        drawing.line(vec![[x, frame.top], [x, frame.bottom]], Ink::Soft);
+    }
+    if is_within(up) {
+        let y = up.place(0.0);
+        drawing.line(vec![[frame.left, y], [frame.right, y]], Ink::Soft);
+    }
 }
 
 /// Draws a curve, broken where it has no value.

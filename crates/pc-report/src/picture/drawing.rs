@@ -37,6 +37,13 @@ pub enum Shape {
         /// Its colour.
         ink: Ink,
     },
+    /// Shapes of which a viewer says something where the pointer is on them.
+    Titled {
+        /// What is said.
+        title: String,
+        /// The shapes.
+        shapes: Vec<Shape>,
+    },
     /// Text on one line.
     Text {
         /// The position of the beginning, the middle or the end of the text, on its baseline.

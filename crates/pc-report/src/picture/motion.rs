@@ -62,7 +62,7 @@ pub(crate) fn panels(record: &Recording, wanted: &Wanted) -> Result<Vec<Panel>, 
     for (x, y) in &wanted.pairs {
         panels.push(portrait(samples, (x, y), &wanted.wrapped)?);
     }
-    Ok(panels)
+    Ok(panels.into_iter().map(|panel| panel.in_units(&record.units)).collect())
 }
 
 /// The panels of the chosen columns: those of one kind are grouped by scale, and drifts are drawn separately.

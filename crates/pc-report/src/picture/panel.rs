@@ -1,6 +1,9 @@
 //! Panels: contents that share axes.
 
-/// Curves, bars or cells that share axes.
+use crate::picture::fan::Fan;
+use crate::picture::roots::Root;
+
+/// Contents that share axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
     /// The title.
@@ -26,6 +29,8 @@ pub enum Scale {
     Linear,
     /// The values are decimal logarithms.
     Decades,
+    /// The values are logarithms with a sign, sign(v) log₁₀(1 + |v|/10ⁿ): linear up to 10ⁿ, and then in decades.
+    SignedDecades(i32),
     /// The values are angles from −π to π.
     Angles,
 }
@@ -35,6 +40,10 @@ pub enum Scale {
 pub enum Content {
     /// Curves, each with its name.
     Curves(Vec<Curve>),
+    /// Bands between quantiles.
+    Fan(Fan),
+    /// The ways of eigenvalues, with the real part to the right and the imaginary one up.
+    Roots(Vec<Root>),
     /// Bars, each given by its left end, its right end and its height.
     Bars(Vec<[f64; 3]>),
     /// A colour for each value; the values are listed column by column.
@@ -57,6 +66,17 @@ pub struct Curve {
     pub points: Vec<(f64, f64)>,
 }
 
+impl Scale {
+    /// The place of a value on the axis, as it is given to a panel.
+    pub fn of(self, value: f64) -> f64 {
+        match self {
+            Scale::Linear | Scale::Angles => value,
+            Scale::Decades => value.log10(),
+            Scale::SignedDecades(n) => value.signum() * (1.0 + value.abs() / 10f64.powi(n)).log10(),
+        }
+    }
+}
+
 impl Panel {
     /// A panel of curves over a common quantity.
     pub fn over(across: &str, title: impl Into<String>, scale: Scale, curves: Vec<Curve>) -> Panel {
@@ -75,7 +95,11 @@ impl Panel {
     pub(crate) fn names(&self) -> Vec<&str> {
         match &self.content {
             Content::Curves(curves) => curves.iter().map(|curve| curve.name.as_str()).collect(),
-            Content::Bars(_) | Content::Cells { .. } => Vec::new(),
+            Content::Fan(fan) => {
+                let bands = fan.bands.iter().map(|band| band.name.as_str());
+                bands.chain([fan.middle.name.as_str()]).collect()
+            }
+            Content::Roots(_) | Content::Bars(_) | Content::Cells { .. } => Vec::new(),
         }
     }
 

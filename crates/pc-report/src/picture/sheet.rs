@@ -72,7 +72,6 @@ impl Picture {
     /// The picture as lines, texts and areas.
     pub fn drawing(&self) -> Drawing {
         let mut drawing = Drawing { width: WIDTH, ..Drawing::default() };
-        let legend = self.legend();
         drawing.text([WIDTH / 2.0, 29.0], Anchor::Middle, LARGE, Ink::Text, self.title.clone());
         let mut y = TITLE;
         for remark in &self.remarks {
@@ -82,38 +81,13 @@ impl Picture {
         }
         let (wide, square): (Vec<&Panel>, Vec<&Panel>) =
             self.panels.iter().partition(|panel| !panel.is_portrait());
-        let margin = wide.iter().map(|panel| panel.margin(WITHIN, SMALL)).fold(0.0, f64::max);
-        for (i, panel) in wide.iter().enumerate() {
-            // The label to the right is written below the last of several.
-            let again = wide.get(i + 1).is_some_and(|next| next.across == panel.across);
-            let panel = &Panel {
-                across: if again { (String::new(), panel.across.1) } else { panel.across.clone() },
-                ..(*panel).clone()
-            };
-            let top = y + HEADING;
-            let frame =
-                Frame { left: EDGE + margin, right: WIDTH - EDGE - legend, top, bottom: top + WITHIN };
-            drawing.text([EDGE, y + 18.0], Anchor::Start, HEADLINE, Ink::Text, panel.title.clone());
-            panel.draw(&mut drawing, frame, SMALL, MOST_POINTS);
-            names(&mut drawing, panel, [frame.right + 14.0, top + 8.0], legend - 14.0);
-            y = frame.bottom + if again { BELOW - 12.0 } else { BELOW };
+        let is_square_first = self.panels.first().is_some_and(Panel::is_portrait);
+        if is_square_first {
+            y = squares(&mut drawing, &square, y);
         }
-        // Two side by side; a single one has the whole width.
-        for pair in square.chunks(2) {
-            let cell = (WIDTH - 2.0 * EDGE) / pair.len() as f64;
-            let top = y + HEADING + 16.0;
-            for (i, panel) in pair.iter().enumerate() {
-                let left = EDGE + i as f64 * cell;
-                let frame = Frame {
-                    left: left + panel.margin(SQUARE, SMALL),
-                    right: left + cell - 2.0 * EDGE,
-                    top,
-                    bottom: top + SQUARE * if pair.len() == 1 { 1.4 } else { 1.0 },
-                };
-                drawing.text([left, y + 18.0], Anchor::Start, HEADLINE, Ink::Text, panel.title.clone());
-                panel.draw(&mut drawing, frame, SMALL, MOST_POINTS);
-            }
-            y = top + SQUARE * if pair.len() == 1 { 1.4 } else { 1.0 } + BELOW;
+        y = rows(&mut drawing, &wide, y, self.legend());
+        if !is_square_first {
+            y = squares(&mut drawing, &square, y);
         }
         drawing.height = (y + 6.0).ceil();
         drawing
@@ -130,23 +104,71 @@ impl Picture {
     }
 }
 
+/// Draws panels over one quantity below each other from `y` on, and returns where they end.
+fn rows(drawing: &mut Drawing, wide: &[&Panel], mut y: f64, legend: f64) -> f64 {
+    let margin = wide.iter().map(|panel| panel.margin(WITHIN, SMALL)).fold(0.0, f64::max);
+    for (i, panel) in wide.iter().enumerate() {
+        // The label to the right is written below the last of several.
+        let again = wide.get(i + 1).is_some_and(|next| next.across == panel.across);
+        let panel = &Panel {
+            across: if again { (String::new(), panel.across.1) } else { panel.across.clone() },
+            ..(*panel).clone()
+        };
+        let top = y + HEADING;
+        let frame = Frame { left: EDGE + margin, right: WIDTH - EDGE - legend, top, bottom: top + WITHIN };
+        drawing.text([EDGE, y + 18.0], Anchor::Start, HEADLINE, Ink::Text, panel.title.clone());
+        panel.draw(drawing, frame, SMALL, MOST_POINTS);
+        names(drawing, panel, [frame.right + 14.0, top + 8.0], legend - 14.0);
+        y = frame.bottom + if again { BELOW - 12.0 } else { BELOW };
+    }
+    y
+}
+
+/// Draws panels with axes that are alike from `y` on, and returns where they end.
+fn squares(drawing: &mut Drawing, square: &[&Panel], mut y: f64) -> f64 {
+    // Two side by side; a single one has the whole width.
+    for pair in square.chunks(2) {
+        let cell = (WIDTH - 2.0 * EDGE) / pair.len() as f64;
+        let top = y + HEADING + 16.0;
+        for (i, panel) in pair.iter().enumerate() {
+            let left = EDGE + i as f64 * cell;
+            let frame = Frame {
+                left: left + panel.margin(SQUARE, SMALL),
+                right: left + cell - 2.0 * EDGE,
+                top,
+                bottom: top + SQUARE * if pair.len() == 1 { 1.4 } else { 1.0 },
+            };
+            drawing.text([left, y + 18.0], Anchor::Start, HEADLINE, Ink::Text, panel.title.clone());
+            panel.draw(drawing, frame, SMALL, MOST_POINTS);
+        }
+        y = top + SQUARE * if pair.len() == 1 { 1.4 } else { 1.0 } + BELOW;
+    }
+    y
+}
+
 /// Draws the names of curves with their colours, one below the other.
 fn names(drawing: &mut Drawing, panel: &Panel, [x, y]: [f64; 2], width: f64) {
     const STEP: f64 = 18.0;
-    let Content::Curves(curves) = &panel.content else { return };
+    let names = panel.names();
     let most = ((width - 26.0) / width_of("x", HEADLINE)).max(4.0) as usize;
-    for (i, curve) in curves.iter().take(MOST_NAMES).enumerate() {
+    for (i, name) in names.iter().take(MOST_NAMES).enumerate() {
         let y = y + STEP * i as f64;
-        drawing.line(vec![[x, y], [x + 18.0, y]], Ink::Curve(i));
-        let name = if curve.name.chars().count() > most {
-            curve.name.chars().take(most - 1).chain(['…']).collect()
+        match &panel.content {
+            Content::Fan(fan) if i < fan.bands.len() => {
+                drawing.area([x, y - 5.0], [x + 18.0, y + 5.0], fan.ink(i))
+            }
+            Content::Fan(_) => drawing.line(vec![[x, y], [x + 18.0, y]], Ink::Curve(0)),
+            _ => drawing.line(vec![[x, y], [x + 18.0, y]], Ink::Curve(i)),
+        }
+        let name = if name.chars().count() > most {
+            name.chars().take(most - 1).chain(['…']).collect()
         } else {
-            curve.name.clone()
+            (*name).to_owned()
         };
         drawing.text([x + 25.0, y + 4.5], Anchor::Start, HEADLINE, Ink::Text, name);
     }
-    if curves.len() > MOST_NAMES {
-        let more = format!("and {} more", curves.len() - MOST_NAMES);
+    if names.len() > MOST_NAMES {
+        let more = format!("and {} more", names.len() - MOST_NAMES);
         let y = y + STEP * MOST_NAMES as f64 + 4.5;
         drawing.text([x, y], Anchor::Start, HEADLINE, Ink::Soft, more);
     }

@@ -16,48 +16,7 @@ impl Drawing {
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
              font-family=\"{FONT}\">\n<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n"
         );
-        for shape in &self.shapes {
-            match shape {
-                Shape::Line { points, ink } => {
-                    let dash = ink.dash().map_or_else(String::new, |[dash, gap]| {
-                        format!(" stroke-dasharray=\"{dash} {gap}\"")
-                    });
-                    let (colour, width) = (hexadecimal(*ink), ink.width());
-                    let d = path(points, 2);
-                    put(
-                        &mut svg,
-                        format_args!(
-                            "<path d=\"{d}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" \
-                             stroke-linejoin=\"round\"{dash}/>\n"
-                        ),
-                    );
-                }
-                Shape::Area { from, to, ink } => put(
-                    &mut svg,
-                    format_args!(
-                        "<rect x=\"{:.2}\" y=\"{:.2}\" width=\"{:.2}\" height=\"{:.2}\" fill=\"{}\"/>\n",
-                        from[0],
-                        from[1],
-                        to[0] - from[0],
-                        to[1] - from[1],
-                        hexadecimal(*ink)
-                    ),
-                ),
-                Shape::Filled { corners, ink } => put(
-                    &mut svg,
-                    format_args!("<path d=\"{}Z\" fill=\"{}\"/>\n", path(corners, 2), hexadecimal(*ink)),
-                ),
-                Shape::Text { at: [x, y], anchor, size, ink, text: words } => put(
-                    &mut svg,
-                    format_args!(
-                        "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{size}\" fill=\"{}\"{}>{}</text>\n",
-                        hexadecimal(*ink),
-                        placed(*anchor),
-                        text(words)
-                    ),
-                ),
-            }
-        }
+        separate(&mut svg, &self.shapes);
         svg + "</svg>\n"
     }
 
@@ -71,41 +30,93 @@ impl Drawing {
             text(title),
             text(description)
         );
-        for shape in &self.shapes {
-            match shape {
-                Shape::Line { points, ink } => {
-                    put(
-                        &mut svg,
-                        format_args!("<path class=\"{}\" d=\"{}\"/>\n", class(*ink), path(points, 1)),
-                    );
-                }
-                Shape::Area { from, to, ink } => put(
-                    &mut svg,
-                    format_args!(
-                        "<path fill=\"{}\" d=\"M{:.1} {:.1}H{:.1}V{:.1}H{:.1}Z\"/>\n",
-                        hexadecimal(*ink),
-                        from[0],
-                        from[1],
-                        to[0],
-                        to[1],
-                        from[0]
-                    ),
-                ),
-                Shape::Filled { corners, ink } => put(
-                    &mut svg,
-                    format_args!("<path fill=\"{}\" d=\"{}Z\"/>\n", hexadecimal(*ink), path(corners, 1)),
-                ),
-                Shape::Text { at: [x, y], anchor, text: words, .. } => put(
-                    &mut svg,
-                    format_args!(
-                        "<text x=\"{x:.1}\" y=\"{y:.1}\"{}>{}</text>\n",
-                        placed(*anchor),
-                        text(words)
-                    ),
-                ),
-            }
-        }
+        on_page(&mut svg, &self.shapes);
         svg + "</svg>"
+    }
+}
+
+/// Appends shapes to the text of a separate file.
+fn separate(svg: &mut String, shapes: &[Shape]) {
+    for shape in shapes {
+        match shape {
+            Shape::Line { points, ink } => {
+                let dash = ink
+                    .dash()
+                    .map_or_else(String::new, |[dash, gap]| format!(" stroke-dasharray=\"{dash} {gap}\""));
+                let (colour, width) = (hexadecimal(*ink), ink.width());
+                let d = path(points, 2);
+                put(
+                    svg,
+                    format_args!(
+                        "<path d=\"{d}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" \
+                         stroke-linejoin=\"round\"{dash}/>\n"
+                    ),
+                );
+            }
+            Shape::Area { from, to, ink } => put(
+                svg,
+                format_args!(
+                    "<rect x=\"{:.2}\" y=\"{:.2}\" width=\"{:.2}\" height=\"{:.2}\" fill=\"{}\"/>\n",
+                    from[0],
+                    from[1],
+                    to[0] - from[0],
+                    to[1] - from[1],
+                    hexadecimal(*ink)
+                ),
+            ),
+            Shape::Filled { corners, ink } => {
+                put(svg, format_args!("<path d=\"{}Z\" fill=\"{}\"/>\n", path(corners, 2), hexadecimal(*ink)))
+            }
+            Shape::Titled { title, shapes } => {
+                put(svg, format_args!("<g><title>{}</title>\n", text(title)));
+                separate(svg, shapes);
+                svg.push_str("</g>\n");
+            }
+            Shape::Text { at: [x, y], anchor, size, ink, text: words } => put(
+                svg,
+                format_args!(
+                    "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{size}\" fill=\"{}\"{}>{}</text>\n",
+                    hexadecimal(*ink),
+                    placed(*anchor),
+                    text(words)
+                ),
+            ),
+        }
+    }
+}
+
+/// Appends shapes to an element of a page.
+fn on_page(svg: &mut String, shapes: &[Shape]) {
+    for shape in shapes {
+        match shape {
+            Shape::Line { points, ink } => {
+                put(svg, format_args!("<path class=\"{}\" d=\"{}\"/>\n", class(*ink), path(points, 1)));
+            }
+            Shape::Area { from, to, ink } => put(
+                svg,
+                format_args!(
+                    "<path fill=\"{}\" d=\"M{:.1} {:.1}H{:.1}V{:.1}H{:.1}Z\"/>\n",
+                    hexadecimal(*ink),
+                    from[0],
+                    from[1],
+                    to[0],
+                    to[1],
+                    from[0]
+                ),
+            ),
+            Shape::Filled { corners, ink } => {
+                put(svg, format_args!("<path fill=\"{}\" d=\"{}Z\"/>\n", hexadecimal(*ink), path(corners, 1)))
+            }
+            Shape::Titled { title, shapes } => {
+                put(svg, format_args!("<g><title>{}</title>\n", text(title)));
+                on_page(svg, shapes);
+                svg.push_str("</g>\n");
+            }
+            Shape::Text { at: [x, y], anchor, text: words, .. } => put(
+                svg,
+                format_args!("<text x=\"{x:.1}\" y=\"{y:.1}\"{}>{}</text>\n", placed(*anchor), text(words)),
+            ),
+        }
     }
 }
 

@@ -1,9 +1,9 @@
 //! The eigenvalues as functions of a parameter, as text and tables.
 
-use pc_analysis::{Eigenvalue, RootLocus};
+use pc_analysis::{Eigenvalue, Mode, RootLocus};
 use pc_model::Model;
 use pc_print::short;
-use pc_report::picture::{Curve, Panel, Picture, Scale};
+use pc_report::picture::Picture;
 use serde_json::{Value, json};
 
 use crate::category::Category;
@@ -12,6 +12,7 @@ use crate::files::error::FileError;
 use crate::linear::arrays::of_locus;
 use crate::linear::error::LinearError;
 use crate::linear::linearizable::Linearizable;
+use crate::linear::locus_picture::{Axes, picture};
 use crate::linear::near::Varied;
 use crate::linear::output::Contents;
 use crate::linear::state::StateChoice;
@@ -32,6 +33,10 @@ pub struct Locus {
     pub locus: RootLocus,
     /// The values for which there is no linearization, each with the reason.
     pub missing: Vec<(f64, String)>,
+    /// The value that the model has by itself.
+    present: Option<f64>,
+    /// The modes for the value nearest to the present one, with its place among the values.
+    modes: Option<(usize, Vec<Mode>)>,
 }
 
 impl Locus {
@@ -56,8 +61,11 @@ impl Locus {
             components: Vec::new(),
             locus: RootLocus::default(),
             missing: Vec::new(),
+            present: present(model, &vary.name),
+            modes: None,
         };
-        for &value in &values {
+        let nearest = locus.present.map_or(f64::INFINITY, |present| distance_to(&values, present));
+        for (place, &value) in values.iter().enumerate() {
             ground.assembly.within_limits()?;
             let mut varied = model.clone();
             varied.set_value(&vary.name, value).map_err(LinearError::Varied)?;
@@ -65,6 +73,10 @@ impl Locus {
             let eigenvalues = match &found {
                 Ok(linear) => {
                     locus.components.clone_from(&linear.components);
+                    let is_nearest = locus.present.is_none_or(|present| (value - present).abs() <= nearest);
+                    if is_nearest || locus.modes.is_none() {
+                        locus.modes = Some((place, linear.modes.clone()));
+                    }
                     Some(linear.spectrum.eigenvalues())
                 }
                 // A wrong request is wrong for all values.
@@ -147,22 +159,23 @@ impl Locus {
         })
     }
 
-    /// A picture of the real and imaginary parts against the parameter.
-    pub fn picture(&self) -> Picture {
-        let curves = |part: fn(&Eigenvalue) -> f64| {
-            let points = |branch: &Vec<Option<Eigenvalue>>| {
-                let all = self.locus.values().iter().zip(branch);
-                all.filter_map(|(&value, lambda)| Some((value, part(lambda.as_ref()?)))).collect::<Vec<_>>()
-            };
-            let curve = |(i, branch)| Curve { name: format!("λ{i}"), points: points(branch) };
-            (1..).zip(self.locus.branches()).map(curve).collect()
-        };
-        let panel = |title, part| Panel::over(&self.name, title, Scale::Linear, curves(part));
-        Picture {
-            title: self.title.clone(),
-            remarks: Vec::new(),
-            panels: vec![panel("Re λ", |l| l.real), panel("Im λ", |l| l.imaginary)],
-        }
+    /// A picture of the branches in the complex plane, and of their real and imaginary parts against the parameter.
+    pub fn picture(&self, axes: Axes) -> Picture {
+        let modes = (0..self.locus.branches().len()).map(|branch| self.mode(branch)).collect::<Vec<_>>();
+        picture((&self.title, &self.name), &self.locus, (self.present, &modes), axes)
+    }
+
+    /// The components that are largest in the mode of a branch, the largest first.
+    fn mode(&self, branch: usize) -> Vec<String> {
+        let Some((place, modes)) = &self.modes else { return Vec::new() };
+        let eigenvalue = self.locus.branches()[branch][*place];
+        let mode = modes.iter().find(|mode| Some(mode.eigenvalue) == eigenvalue);
+        let Some(vector) = mode.and_then(|mode| mode.vector.as_ref()) else { return Vec::new() };
+        let sizes = vector.iter().map(|&(re, im)| re.hypot(im));
+        let mut sized: Vec<(f64, &String)> = sizes.zip(&self.components).collect();
+        sized.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let large = sized.into_iter().filter(|(size, _)| *size >= LARGE);
+        large.take(MOST_NAMED).map(|(_, name)| name.clone()).collect()
     }
 
     /// Writes the locus to a file.
@@ -178,4 +191,23 @@ impl Locus {
         };
         contents.write(file)
     }
+}
+
+/// A component of a mode that is a smaller part of the largest does not name it.
+const LARGE: f64 = 0.2;
+/// The largest number of components that name a mode.
+const MOST_NAMED: usize = 3;
+
+/// The value that a model gives to a parameter or start value.
+fn present(model: &Model, name: &str) -> Option<f64> {
+    let parameter = model.parameters().find(|(known, _)| *known == name).map(|(_, value)| value);
+    parameter.or_else(|| {
+        let place = model.start_names().iter().position(|known| known == name)?;
+        model.start().ok()?.get(place).copied()
+    })
+}
+
+/// The distance of a value from the nearest of a list.
+fn distance_to(values: &[f64], from: f64) -> f64 {
+    values.iter().map(|value| (value - from).abs()).fold(f64::INFINITY, f64::min)
 }

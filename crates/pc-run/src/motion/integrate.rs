@@ -263,6 +263,7 @@ impl Integration<'_, '_> {
         let Solution { trajectory, occurrences, slides, .. } = solved.solution;
         Ok(Run {
             title: model.title().to_owned(),
+            units: units(model),
             parameters: model.parameters().map(|(name, value)| (name.to_owned(), value)).collect(),
             state: flow.motion.names().to_vec(),
             never_exceeded: tolerances.never_exceeded(&written_start(model), &largest),
@@ -439,6 +440,12 @@ impl Integration<'_, '_> {
         let (mut flow, t_start) = (self.flow.clone(), self.plan.t_start);
         self.assembled(|assembly| lost_inertia(assembly, &mut flow, t_start, reached))
     }
+}
+
+/// The units that the text of a model names, each after its quantity.
+pub(crate) fn units(model: &Model) -> Vec<(String, String)> {
+    let given = model.document().units.iter();
+    given.map(|given| (given.quantity.text.clone(), given.unit.value.clone())).collect()
 }
 
 fn names_of_events(flow: &Flow) -> Vec<String> {

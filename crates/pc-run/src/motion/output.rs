@@ -49,7 +49,7 @@ impl Run {
             Format::Json => self.write_json(out),
             Format::Npz => npz::write(&self.table, &self.times_of_events(), out),
             #[cfg(feature = "parquet")]
-            Format::Parquet => parquet::write("motion", &self.table, out),
+            Format::Parquet => parquet::write("motion", &self.table, &self.said_of_columns(), out),
             Format::Csv | Format::Mat => self.write_csv(out),
         })
     }
@@ -65,13 +65,28 @@ impl Run {
     fn write_json(&self, out: &mut dyn Write) -> io::Result<()> {
         let parameters: Map<String, Value> =
             self.parameters.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
-        let before = [("model", json!(self.title)), ("parameters", Value::from(parameters))];
+        let mut before = vec![("model", json!(self.title)), ("parameters", Value::from(parameters))];
+        before.extend(self.units().map(|units| ("units", units)));
         let occurred = |occurrence: &Occurrence| json!({ "name": self.events[occurrence.event], "time": occurrence.time });
         let events = (!self.events.is_empty())
             .then(|| ("events", self.occurrences.iter().map(occurred).collect::<Value>()));
         let after: Vec<(&str, Value)> =
             events.into_iter().chain([("summary", summary::json(self))]).collect();
         json::write(&before, &self.table, &after, out)
+    }
+
+    /// The units of the columns that have one, by their names; none if no column has.
+    fn units(&self) -> Option<Value> {
+        let is_column = |name: &&(String, String)| Table::columns(&self.table).contains(&name.0);
+        let units: Map<String, Value> =
+            self.units.iter().filter(is_column).map(|(name, unit)| (name.clone(), json!(unit))).collect();
+        (!units.is_empty()).then_some(Value::from(units))
+    }
+
+    /// What a file says of the columns besides their names.
+    #[cfg(feature = "parquet")]
+    fn said_of_columns(&self) -> Vec<(&'static str, String)> {
+        self.units().map(|units| ("units", units.to_string())).into_iter().collect()
     }
 
     /// The times of each event, as lists called `events/NAME`.

@@ -32,6 +32,7 @@ impl Run {
                 .collect(),
             keeps_energy: self.keeps_energy,
             events: self.occurrences.iter().map(|occurrence| occurrence.time).collect(),
+            units: self.units.clone(),
             remark,
         }
     }

@@ -17,6 +17,8 @@ use crate::plan::tolerances::Tolerances;
 pub struct Run {
     /// The title of the model.
     pub title: String,
+    /// The units that its text names, each after its quantity.
+    pub units: Vec<(String, String)>,
     /// The parameters with their values.
     pub parameters: Vec<(String, f64)>,
     /// The plan.

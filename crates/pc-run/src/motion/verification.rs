@@ -4,7 +4,9 @@ use pc_mech::Equations;
 use pc_model::{Assembly, Flow, Model, Variables};
 use pc_report::Check;
 use pc_solve::Occurrence;
-use pc_verify::{Agreement, Jump, Options, Outlet, Second, Slope, VerifyError, verify, vouch};
+use pc_verify::{
+    Agreement, Jump, LONG_EQUATIONS, Options, Outlet, Second, Slope, VerifyError, verify, vouch,
+};
 
 use crate::error::RunError;
 use crate::linear::compared::steady_agrees;
@@ -22,10 +24,11 @@ pub fn checked<'g>(
     equations: &Equations<'g>,
 ) -> Result<Check<'g>, RunError> {
     let check = Check::new(model, assembly, equations)?;
-    let mut second = match verify(model, assembly, &Options { every_form: false, ..Options::default() }) {
-        Err(error @ VerifyError::Disagreement(_)) => return Err(RunError::Verify(Box::new(error))),
-        outcome => outcome,
-    };
+    let mut second =
+        match verify(model, assembly, &Options { every_form_up_to: LONG_EQUATIONS, ..Options::default() }) {
+            Err(error @ VerifyError::Disagreement(_)) => return Err(RunError::Verify(Box::new(error))),
+            outcome => outcome,
+        };
     assembly.within_limits()?;
     if let (Ok(agreement), Some(steady)) = (&mut second, check.steady_motion()) {
         match steady_agrees(model, assembly, steady) {

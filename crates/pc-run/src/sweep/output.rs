@@ -53,7 +53,7 @@ pub fn write(
         Format::Json => json::write(&[("model", json!(title))], &table, &[], out),
         Format::Npz => npz::write(&table, &[], out),
         #[cfg(feature = "parquet")]
-        Format::Parquet => parquet::write("sweep", &table, out),
+        Format::Parquet => parquet::write("sweep", &table, &[], out),
         Format::Csv | Format::Mat => csv::write(&table, out),
     });
     written.map_err(|source| FileError::Write {

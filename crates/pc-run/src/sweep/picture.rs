@@ -3,7 +3,7 @@
 
 use std::io;
 
-use pc_report::picture::{Content, Curve, Panel, Picture, Scale, by_scale};
+use pc_report::picture::{Band, Content, Curve, Fan, Panel, Picture, Scale, by_scale};
 
 use super::of::SweepOf;
 use crate::sweep::error::SweepError;
@@ -332,23 +332,33 @@ fn bars(sorted: &[f64]) -> Vec<[f64; 3]> {
     bars
 }
 
-/// The quantiles of a column over time.
+/// The quantiles of a column over time, as bands about the median.
 fn bands(finished: &[Member], k: usize, name: &str) -> Panel {
     let grid = finished.iter().map(|member| &member.rows).max_by_key(|rows| rows.len());
     let times: Vec<f64> = grid.map_or_else(Vec::new, |rows| rows.iter().map(|row| row[0]).collect());
-    let mut curves: Vec<Curve> =
-        QUANTILES.iter().map(|(_, label)| Curve { name: (*label).to_owned(), points: Vec::new() }).collect();
-    for (i, &t) in times.iter().enumerate() {
+    let sorted = |(i, t): (usize, &f64)| {
         // A member ended by an event has a last row at another time.
-        let here = finished.iter().filter_map(|member| member.rows.get(i)).filter(|row| row[0] == t);
+        let here = finished.iter().filter_map(|member| member.rows.get(i)).filter(|row| row[0] == *t);
         let mut values: Vec<f64> = here.map(|row| row[1 + k]).filter(|v| v.is_finite()).collect();
         values.sort_by(f64::total_cmp);
-        for (curve, (part, _)) in curves.iter_mut().zip(QUANTILES) {
-            curve.points.push((t, quantile(&values, part).unwrap_or(f64::NAN)));
-        }
+        values
+    };
+    let sorted: Vec<Vec<f64>> = times.iter().enumerate().map(sorted).collect();
+    let at = |part: f64| sorted.iter().map(move |values| quantile(values, part).unwrap_or(f64::NAN));
+    let pairs = QUANTILES.iter().zip(QUANTILES.iter().rev()).take(QUANTILES.len() / 2);
+    let band = |(&(low, from), &(high, to)): (&(f64, &str), &(f64, &str))| Band {
+        name: format!("{from} to {to}"),
+        low: at(low).collect(),
+        high: at(high).collect(),
+    };
+    let (median, called) = QUANTILES[QUANTILES.len() / 2];
+    let middle = Curve { name: called.to_owned(), points: times.iter().copied().zip(at(median)).collect() };
+    let fan = Fan { bands: pairs.map(band).collect(), middle, across: times };
+    Panel {
+        span: span(Some(&fan.middle)),
+        content: Content::Fan(fan),
+        ..Panel::over("t", name, Scale::Linear, Vec::new())
     }
-    let span = span(curves.first());
-    Panel { span, ..Panel::over("t", name, Scale::Linear, curves) }
 }
 
 /// A quantile of sorted values, found by linear interpolation between two of them.
@@ -371,6 +381,22 @@ mod tests {
             [5.0, 25.0, 50.0, 75.0, 95.0].map(Some)
         );
         assert_eq!((quantile(&[1.0, 2.0], 0.25), quantile(&[], 0.5)), (Some(1.25), None));
+    }
+
+    #[test]
+    fn random_members_over_time_are_bands_about_the_median() {
+        let member = |i: u32| Member {
+            values: Vec::new(),
+            rows: (0..3).map(|t| vec![f64::from(t), f64::from(i * t)]).collect(),
+        };
+        let members: Vec<Member> = (0..=100).map(member).collect();
+        let panel = bands(&members, 0, "x");
+        let Content::Fan(fan) = &panel.content else { panic!("{panel:?}") };
+        let names: Vec<&str> = fan.bands.iter().map(|band| band.name.as_str()).collect();
+        assert_eq!(names, ["5 % to 95 %", "25 % to 75 %"]);
+        assert_eq!((fan.bands[0].low[2], fan.bands[0].high[2]), (10.0, 190.0));
+        assert_eq!(fan.middle.points, [(0.0, 0.0), (1.0, 50.0), (2.0, 100.0)]);
+        assert_eq!(panel.span, Some((0.0, 2.0)));
     }
 
     #[test]

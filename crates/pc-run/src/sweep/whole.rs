@@ -33,6 +33,7 @@ use crate::error::RunError;
 use crate::linear::state::StateChoice;
 use crate::motion::derived::Derived;
 use crate::motion::identity::{self, Identity};
+use crate::motion::integrate::units;
 use crate::motion::remarks::say_dropped;
 use crate::observer::Observer;
 use crate::plan::Plan;
@@ -67,6 +68,8 @@ impl SweepWishes {
 /// A sweep to be computed.
 pub struct Sweep {
     title: String,
+    /// The units that the text of the model names, each after its quantity.
+    units: Vec<(String, String)>,
     deadline: Deadline,
     work: Box<dyn Work>,
     sweep_columns: SweepColumns,
@@ -109,10 +112,12 @@ impl Sweep {
             return Err(SweepError::Many { members, limit }.into());
         }
         let (title, deadline) = (model.title().to_owned(), model.budget().deadline().clone());
+        let units = units(&model);
         let (work, depends_on) = begun(wishes, model, design, observer)?;
         let sweep_columns = SweepColumns::new(wishes.of, &names, work.members().columns());
         Ok(Sweep {
             title,
+            units,
             deadline,
             work,
             sweep_columns,
@@ -138,11 +143,23 @@ impl Sweep {
     ) -> Result<Sweep, RunError> {
         let (members, names) = (design.members(), design.names());
         let (title, deadline) = (model.title().to_owned(), plan.deadline.clone());
+        let units = units(&model);
         let work = Motions::new(model, design, plan, all_rows, workers(threads), Some(derived))?;
         let sweep_columns = SweepColumns::new(SweepOf::Run, &names, work.members().columns());
         let (counts, header) = (Vec::new(), Identity::new());
         let work = Box::new(work);
-        Ok(Sweep { title, deadline, work, sweep_columns, threads, members, is_random: false, counts, header })
+        Ok(Sweep {
+            title,
+            units,
+            deadline,
+            work,
+            sweep_columns,
+            threads,
+            members,
+            is_random: false,
+            counts,
+            header,
+        })
     }
 
     /// The records of all members, in order.
@@ -178,6 +195,11 @@ impl Sweep {
     /// The title of the model.
     pub fn title(&self) -> &str {
         &self.title
+    }
+
+    /// The units that the text of the model names, each after its quantity.
+    pub fn units(&self) -> &[(String, String)] {
+        &self.units
     }
 
     /// The columns of the sweep's table.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::Type;
@@ -22,15 +23,21 @@ enum Column {
     Texts(Vec<ByteArray>),
 }
 
-/// Writes a table with required columns of types INT64 (unsigned), DOUBLE and BYTE_ARRAY (UTF-8), without
+/// Writes a table, with metadata as pairs of a key and a value, and with required columns of types INT64 (unsigned), DOUBLE and BYTE_ARRAY (UTF-8), without
 /// compression.
 ///
 /// # Errors
 /// [`io::Error`]
-pub(crate) fn write(name: &str, table: &dyn Rows, out: impl io::Write + Send) -> io::Result<()> {
+pub(crate) fn write(
+    name: &str,
+    table: &dyn Rows,
+    said: &[(&str, String)],
+    out: impl io::Write + Send,
+) -> io::Result<()> {
     let columns = table.columns();
     let schema = schema(name, &columns).map_err(io::Error::other)?;
-    let properties = Arc::new(WriterProperties::builder().build());
+    let said = said.iter().map(|(key, value)| KeyValue::new((*key).to_owned(), value.clone())).collect();
+    let properties = Arc::new(WriterProperties::builder().set_key_value_metadata(Some(said)).build());
     let mut file = SerializedFileWriter::new(out, Arc::new(schema), properties).map_err(io::Error::other)?;
     let (mut group, mut rows) = (empty(&columns), 0);
     table.each(&mut |row| {
