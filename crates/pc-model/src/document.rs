@@ -39,8 +39,8 @@ pub(crate) mod units;
 pub use contact::{Contact, ContactFriction, ContactShape};
 pub use contents::{
     Algebra, AlgebraDefinition, Body, Bracket, Constraint, DeclaredKind, Document, Event, GivenFunction,
-    Gravity, HamiltonJacobi, Heading, Input, InputValue, Lagrangian, Orientation, QuasiVelocity, State,
-    TableFile,
+    Gravity, HamiltonJacobi, Heading, Input, InputValue, Lagrangian, NamedUnit, Orientation, QuasiVelocity,
+    State, TableFile,
 };
 pub use draw::{Draw, DrawnPlace, DrawnShape};
 pub use expression::{Expression, Located, Name, NamedExpression};
@@ -53,4 +53,3 @@ pub use schema::SCHEMA;
 pub use simulation::MOST_SAMPLES;
 pub use text_map::TextMap;
 pub use tolerance::AbsoluteTolerance;
-pub use units::NamedUnit;

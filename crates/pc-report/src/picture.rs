@@ -22,9 +22,7 @@ mod svg;
 pub(crate) mod units;
 
 pub use drawing::{Anchor, Drawing, Ink, Shape};
-pub use fan::{Band, Fan};
 pub use motion::Wanted;
-pub use panel::{Content, Curve, Panel, Scale};
-pub use roots::Root;
+pub use panel::{Band, Content, Curve, Fan, Panel, Root, Scale};
 pub use scales::by_scale;
 pub use sheet::Picture;

@@ -67,7 +67,7 @@ fn only_quantities_have_units() {
         assert_eq!(output.status.code(), Some(3), "{said}");
         assert!(words.iter().all(|word| said.contains(word)), "{said}");
     };
-    refused("pul = \"N\"", &["`pul` is not a quantity", "did you mean `pull`?", "m.toml:15:1"]);
-    refused("x = \"\"", &["the name of a unit", "m.toml:15:5"]);
-    refused("x = 1", &["m.toml:15:5"]);
+    refused("pul = \"N\"", &["`pul` is not a quantity", "did you mean `pull`?", "m.toml:14:1"]);
+    refused("x = \"\"", &["the name of a unit", "m.toml:14:5"]);
+    refused("x = 1", &["m.toml:14:5"]);
 }

@@ -13,7 +13,6 @@ use crate::document::expression::{Expression, Located, Name, NamedExpression};
 use crate::document::inertia::Inertia;
 use crate::document::joints::{Point, TreeBody};
 use crate::document::run_settings::Simulation;
-use crate::document::units::NamedUnit;
 
 /// A model as written. Every list is in the order of the file.
 #[derive(Clone, Debug, Default)]
@@ -75,6 +74,15 @@ pub struct Document {
     pub events: Vec<Event>,
     /// `[simulation]`
     pub simulation: Simulation,
+}
+
+/// The name of the unit of a quantity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedUnit {
+    /// The quantity: any declared name, a velocity x', `t` or `energy`.
+    pub quantity: Name,
+    /// The name of its unit.
+    pub unit: Located<String>,
 }
 
 /// The title of a model.

@@ -3,22 +3,13 @@
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
 use crate::diagnostics::meaning::MeaningError;
-use crate::document::contents::Document;
-use crate::document::expression::{Located, Name};
+use crate::document::contents::{Document, NamedUnit};
+use crate::document::expression::Located;
 use crate::document::hidden::is_hidden;
 use crate::document::reader::{Item, Table};
 
 /// The most characters of the name of a unit.
 const MOST_CHARACTERS: usize = 40;
-
-/// The name of the unit of a quantity.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NamedUnit {
-    /// The quantity: any declared name, a velocity x', `t` or `energy`.
-    pub quantity: Name,
-    /// The name of its unit.
-    pub unit: Located<String>,
-}
 
 pub(super) fn units(table: &Table<'_>) -> Result<Vec<NamedUnit>, ModelError> {
     table.items().map(|item| Ok(NamedUnit { quantity: item.new_label()?, unit: unit(&item)? })).collect()

@@ -2,33 +2,11 @@
 
 use crate::picture::axes::Axis;
 use crate::picture::drawing::{Drawing, Ink};
-use crate::picture::panel::Curve;
+use crate::picture::panel::Fan;
 use crate::picture::simplify::simplified;
 
 /// The parts of the colour of the curve that the outermost and the innermost band have; the rest is white.
 const SHADES: [f64; 2] = [0.18, 0.42];
-
-/// Bands between quantiles, with the middle one as a curve.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Fan {
-    /// The values to the right.
-    pub across: Vec<f64>,
-    /// The bands, the widest first.
-    pub bands: Vec<Band>,
-    /// The middle.
-    pub middle: Curve,
-}
-
-/// A band, broken where a value is not finite.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Band {
-    /// Its name.
-    pub name: String,
-    /// Its lower edge.
-    pub low: Vec<f64>,
-    /// Its upper edge.
-    pub high: Vec<f64>,
-}
 
 impl Fan {
     /// All values.
@@ -71,6 +49,7 @@ impl Fan {
 mod tests {
     use super::*;
     use crate::picture::drawing::Shape;
+    use crate::picture::panel::{Band, Curve};
 
     #[test]
     fn a_band_lies_between_its_edges_and_breaks_at_a_gap() {

@@ -1,8 +1,5 @@
 //! Panels: contents that share axes.
 
-use crate::picture::fan::Fan;
-use crate::picture::roots::Root;
-
 /// Contents that share axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
@@ -64,6 +61,39 @@ pub struct Curve {
     pub name: String,
     /// Its points.
     pub points: Vec<(f64, f64)>,
+}
+
+/// Bands between quantiles, with the middle one as a curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fan {
+    /// The values to the right.
+    pub across: Vec<f64>,
+    /// The bands, the widest first.
+    pub bands: Vec<Band>,
+    /// The middle.
+    pub middle: Curve,
+}
+
+/// A band, broken where a value is not finite.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Band {
+    /// Its name.
+    pub name: String,
+    /// Its lower edge.
+    pub low: Vec<f64>,
+    /// Its upper edge.
+    pub high: Vec<f64>,
+}
+
+/// The way of an eigenvalue, broken where it has no value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Root {
+    /// What is said of it where a viewer points at it.
+    pub title: String,
+    /// Its real and imaginary part for each value of the quantity.
+    pub points: Vec<(f64, f64)>,
+    /// Its parts for the present value of the quantity.
+    pub present: Option<(f64, f64)>,
 }
 
 impl Scale {

@@ -2,6 +2,7 @@
 
 use crate::picture::axes::Axis;
 use crate::picture::drawing::{Drawing, Ink, Shape};
+use crate::picture::panel::Root;
 use crate::picture::simplify::simplified;
 
 /// Half the size of the marks of the first and the last point.
@@ -14,17 +15,6 @@ const ARROWS: [f64; 2] = [0.3, 0.7];
 const SHORTEST: f64 = 30.0;
 /// The corners of what looks like a circle.
 const CORNERS: u32 = 24;
-
-/// The way of an eigenvalue, broken where it has no value.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Root {
-    /// What is said of it where a viewer points at it.
-    pub title: String,
-    /// Its real and imaginary part for each value of the quantity.
-    pub points: Vec<(f64, f64)>,
-    /// Its parts for the present value of the quantity.
-    pub present: Option<(f64, f64)>,
-}
 
 impl Root {
     /// Draws the way: a cross at its first point, a circle at its last, a disc at the present one, and arrows along it.

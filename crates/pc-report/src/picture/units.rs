@@ -4,7 +4,7 @@ use crate::picture::panel::{Content, Panel, Scale};
 use crate::picture::sheet::Picture;
 
 /// The name of a quantity with that of its unit, `x [m]`, if it has one; an error of x has the unit of x.
-pub(crate) fn labelled(name: &str, units: &[(String, String)]) -> String {
+fn labelled(name: &str, units: &[(String, String)]) -> String {
     let of = name.strip_prefix("error(").and_then(|name| name.strip_suffix(')')).unwrap_or(name);
     match units.iter().find(|(known, _)| known == of) {
         Some((_, unit)) => format!("{name} [{unit}]"),
