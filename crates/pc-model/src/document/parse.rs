@@ -18,7 +18,7 @@ use crate::document::contents::Document;
 use crate::document::loops::{self, Loop};
 use crate::document::reader::{Item, Table};
 use crate::document::{
-    bodies, checks, contacts, draw, functions, hanging, inputs, sections, simulation, syntax, tree,
+    bodies, checks, contacts, draw, drawing, functions, hanging, inputs, sections, simulation, syntax, tree,
 };
 
 impl Document {
@@ -46,6 +46,7 @@ impl Document {
         checks::require_energy(&document)?;
         checks::require_bodies(&document)?;
         checks::check_tolerances(&document)?;
+        drawing::check(&document)?;
         Ok(document)
     }
 
@@ -94,6 +95,7 @@ impl Document {
             "forces" => self.forces = table.on_velocities()?,
             "integrals" => self.integrals = table.declarations()?,
             "outputs" => self.outputs = table.declarations()?,
+            "drawing" => self.drawing = drawing::drawing(&table)?,
             "hamilton_jacobi" => self.hamilton_jacobi = Some(sections::hamilton_jacobi(&table)?),
             "events" => self.events = simulation::events(&table)?,
             _ => self.simulation = simulation::simulation(&table)?,
