@@ -5,10 +5,11 @@
 //! `parameters` and `tables`, `frame`, `definitions`, `start` with the `points_of_contact`, `bodies`, the `tree` of bodies on joints and
 //! `external_force`, `brackets`, `joint_reactions`, `friction_of_contacts`, `constraints` with `constraint_treatment`, `body_reactions` and
 //! the names of a `resultant`, `action`, `event` and `events` with the `stops` of joints, and the quasi-velocities `given` in addition to those of the text;
-//! `trial`, `definite`, `inertia` and `orientations` check the start. A `function` and a `drawing`, with the `block`
-//! of a body, are assembled separately, on request.
+//! `trial`, `definite`, `inertia` and `orientations` check the start. A `function`, a `drawing` and its `arrows` are assembled
+//! separately, on request: a `shape` is a shape of the text or part of the `outlines` of bodies, among them the `block` of a body.
 
 pub(crate) mod action;
+pub(crate) mod arrows;
 pub(crate) mod assemble;
 pub(crate) mod assembler;
 pub(crate) mod assembly;
@@ -31,9 +32,11 @@ pub(crate) mod given;
 mod inertia;
 pub(crate) mod joint_reactions;
 pub(crate) mod orientations;
+mod outlines;
 pub(crate) mod parameters;
 mod points_of_contact;
 pub(crate) mod resultant;
+pub(crate) mod shape;
 pub(crate) mod start;
 mod start_with_values;
 pub(crate) mod stops;

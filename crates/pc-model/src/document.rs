@@ -4,7 +4,7 @@
 //! TOML becomes a [`Document`]. Read the result first: `expression`, whose parts `text_map` locates in the file, and
 //! `contents`, section by section; `run_settings` contains the defaults of a run. Then see how the text is read: `reading` reads bytes,
 //! `syntax` parses TOML, `reader` gives typed access to its values, and `hidden` lists characters that labels must not contain.
-//! `sections`, `bodies`, `tree` with its `joints` and their `inertia`, `loops`, `contacts` made of a `contact` each, `inputs`, `functions`, `draw`, `units` and `simulation`, with its
+//! `sections`, `bodies`, `tree` with its `joints` and their `inertia`, `loops`, `contacts` made of a `contact` each, `inputs`, `functions`, `draw`, `drawing`, `units` and `simulation`, with its
 //! `tolerance`s, read the sections; `hanging` declares the coordinates of joints, `checks` tests conditions between the sections, and
 //! `parse` combines all of these. `schema` describes the format for editors.
 
@@ -14,6 +14,7 @@ pub(crate) mod contact;
 pub(crate) mod contacts;
 pub(crate) mod contents;
 pub(crate) mod draw;
+pub(crate) mod drawing;
 pub(crate) mod expression;
 pub(crate) mod following;
 pub(crate) mod functions;
@@ -43,6 +44,7 @@ pub use contents::{
     State, TableFile,
 };
 pub use draw::{Draw, DrawnPlace, DrawnShape};
+pub use drawing::Drawing;
 pub use expression::{Expression, Located, Name, NamedExpression};
 pub use hidden::is_hidden;
 pub use inertia::Inertia;

@@ -47,15 +47,16 @@ mod sealed;
 mod variables;
 
 pub use assembly::action::Action;
+pub use assembly::arrows::{Arrow, Quantity};
 pub use assembly::assemble::derivations;
 pub use assembly::assembly::Assembly;
 pub use assembly::constraint_treatment::{
     ClassifiedConstraint, ConstraintFormulation, ConstraintTreatment, MultiplierFormulation,
 };
-pub use assembly::drawing::{Shape, Spot};
 pub use assembly::event::{Event, Impact};
 pub use assembly::external_force::NotForced;
 pub use assembly::parameters::Parameters;
+pub use assembly::shape::{Shape, Spot};
 pub use deep::deep;
 pub use diagnostics::category::Category;
 pub use diagnostics::error::{Diagnostic, ModelError};

@@ -172,6 +172,8 @@ def test_bodies_on_joints_are_those_of_a_text() -> None:
     )
     builder = builder.point("middle", "coupler", [1, 0, 0]).output("height", "middle_y")
     builder = builder.draw("line", through=[["middle_x", "middle_y", 0], [1, 0, 0]]).draw("text", at=[0, 1, 0], text="up")
+    builder = builder.drawing(hide=["coupler"], up=[0, 1, 0])
+    assert '[drawing]\n"hide" = ["coupler"]\n"up" = [0.0, 1.0, 0.0]\n' in builder.text
     system = builder.simulation(t_end=0.5).build().system()
     motion = system.run()
     # The coupler of a parallelogram moves without turning, and each crank turns as it likes: both keep their distance.

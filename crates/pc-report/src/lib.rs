@@ -44,4 +44,4 @@ pub use page::player::animation;
 pub use page::report::{Page, report};
 pub use recording::{ColumnKind, Columns, Recording, Samples, UnknownColumn};
 pub use remarks::{NEGATIVE_ENERGY, changing_masses, dropped};
-pub use scene::{Scene, SceneShape};
+pub use scene::{Scene, SceneArrow, SceneShape};

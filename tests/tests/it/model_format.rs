@@ -137,7 +137,7 @@ fn the_page_names_every_section_key_function_and_algebra() {
     }
     let sections =
         ["model", "algebra", "lagrangian", "gravity", "simulation", "bodies.a", "events.a", "points.a"];
-    for place in sections.into_iter().chain(["loops.a", "contacts.a", "hamilton_jacobi"]) {
+    for place in sections.into_iter().chain(["loops.a", "contacts.a", "drawing", "hamilton_jacobi"]) {
         allowed(&format!("[{place}]\nwrong = 1\n")).iter().for_each(|key| look_for(format!("`{key}`")));
     }
     for (place, joint) in [("center = [0, 0, 0]\nwrong", "1"), ("joint", "{ wrong = 1 }")] {
@@ -149,7 +149,7 @@ fn the_page_names_every_section_key_function_and_algebra() {
     {
         look_for(format!("`\"{kind}\"`"));
     }
-    for kind in ["point", "line", "disc", "sphere", "box", "spring", "trace", "text"] {
+    for kind in ["point", "line", "disc", "ring", "sphere", "box", "spring", "trace", "text"] {
         look_for(format!("`\"{kind}\"`"));
         let text = format!("[[draw]]\nkind = \"{kind}\"\nwrong = 1\n");
         allowed(&text).iter().for_each(|key| look_for(format!("`{key}`")));

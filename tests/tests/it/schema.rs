@@ -85,6 +85,7 @@ const OBJECTS: &[(&str, &str)] = &[
     ("/properties/algebra", "[algebra]\nWRONG = 1"),
     ("/properties/lagrangian", "[lagrangian]\nWRONG = 1"),
     ("/properties/gravity", "[gravity]\nWRONG = 1"),
+    ("/properties/drawing", "[drawing]\nWRONG = 1"),
     ("/properties/hamilton_jacobi", "[hamilton_jacobi]\nWRONG = 1"),
     ("/properties/simulation", "[simulation]\nWRONG = 1"),
     // The reader knows both kinds of table together.
@@ -103,11 +104,12 @@ const OBJECTS: &[(&str, &str)] = &[
     ("/definitions/shape/oneOf/0", "[[draw]]\nkind = \"point\"\nWRONG = 1"),
     ("/definitions/shape/oneOf/1", "[[draw]]\nkind = \"line\"\nWRONG = 1"),
     ("/definitions/shape/oneOf/2", "[[draw]]\nkind = \"disc\"\nWRONG = 1"),
-    ("/definitions/shape/oneOf/3", "[[draw]]\nkind = \"sphere\"\nWRONG = 1"),
-    ("/definitions/shape/oneOf/4", "[[draw]]\nkind = \"box\"\nWRONG = 1"),
-    ("/definitions/shape/oneOf/5", "[[draw]]\nkind = \"spring\"\nWRONG = 1"),
-    ("/definitions/shape/oneOf/6", "[[draw]]\nkind = \"trace\"\nWRONG = 1"),
-    ("/definitions/shape/oneOf/7", "[[draw]]\nkind = \"text\"\nWRONG = 1"),
+    ("/definitions/shape/oneOf/3", "[[draw]]\nkind = \"ring\"\nWRONG = 1"),
+    ("/definitions/shape/oneOf/4", "[[draw]]\nkind = \"sphere\"\nWRONG = 1"),
+    ("/definitions/shape/oneOf/5", "[[draw]]\nkind = \"box\"\nWRONG = 1"),
+    ("/definitions/shape/oneOf/6", "[[draw]]\nkind = \"spring\"\nWRONG = 1"),
+    ("/definitions/shape/oneOf/7", "[[draw]]\nkind = \"trace\"\nWRONG = 1"),
+    ("/definitions/shape/oneOf/8", "[[draw]]\nkind = \"text\"\nWRONG = 1"),
     ("/definitions/event", "[events.a]\nWRONG = 1"),
 ];
 

@@ -245,6 +245,21 @@ fn the_page_of_a_heavy_top() {
 }
 
 #[test]
+fn the_page_of_a_quadrotor() {
+    // An end of an arm, a propeller and its normal, the velocity, the weight, and the thrust.
+    const PLACES: [(usize, &str); 7] = [
+        (18, "x - l*cos(ψ)*cos(θ)"),
+        (32, "z - l*sin(θ) + 0.02*cos(θ)*cos(φ)"),
+        (35, "cos(θ)*cos(φ)"),
+        (58, "x"),
+        (62, "v_y"),
+        (66, "-m*g"),
+        (69, "(f1 + f2 + f3 + f4)*cos(θ)*cos(φ)"),
+    ];
+    shown(|| Case { name: "quadrotor", text: builtin("quadrotor"), places: &PLACES });
+}
+
+#[test]
 fn the_page_of_a_bicycle() {
     // The hub of the rear wheel, the first body.
     const PLACES: [(usize, &str); 3] = [(0, "Hx"), (1, "Hy"), (2, "Hz")];

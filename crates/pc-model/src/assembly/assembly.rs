@@ -12,6 +12,7 @@ use crate::assembly::event::Event;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
 use crate::document::{Contact, Document};
+use crate::names::scope::Scope;
 
 /// The system of a model, with the state from which its motion starts.
 pub struct Assembly<'g> {
@@ -178,6 +179,13 @@ impl<'g> Assembly<'g> {
                 graph.substitute(&[system.energy_rate()], &zeros)[0].is_zero()
             }
         }
+    }
+
+    /// The symbols x' with their values b η + b_0.
+    pub(crate) fn velocities_of_coordinates(&self) -> Vec<(Expr<'g>, Expr<'g>)> {
+        let (system, graph) = (&self.system, self.system.graph());
+        let velocities = system.frame().velocities(system.quasi_velocities());
+        Scope::new(graph, &self.document).velocities().into_iter().zip(velocities).collect()
     }
 
     /// The quasi-velocities of the system at the start.

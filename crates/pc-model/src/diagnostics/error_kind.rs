@@ -147,6 +147,14 @@ pub enum ErrorKind {
         /// The existing bodies.
         known: Vec<String>,
     },
+    /// A name in `[drawing]` that is not that of a body or point.
+    #[error("no body or point is called `{name}`")]
+    NothingToHide {
+        /// The name.
+        name: String,
+        /// The existing bodies and points.
+        known: Vec<String>,
+    },
     /// A body without attitude that would roll or slide.
     #[error("the body `{body}` is a particle, without a shape that could touch anything")]
     Pointlike {
@@ -384,6 +392,7 @@ pub(crate) const SECTIONS: &[&str] = &[
     "outputs",
     "units",
     "draw",
+    "drawing",
     "hamilton_jacobi",
     "events",
     "simulation",
@@ -438,6 +447,12 @@ impl ErrorKind {
             Self::NoSuchBody { known, .. } if known.is_empty() => "declare it in [bodies.NAME]".into(),
             Self::NoSuchBody { name, known } => {
                 suggest(name, known, &format!("the bodies are {}", listed(known)))
+            }
+            Self::NothingToHide { known, .. } if known.is_empty() => {
+                "leave `hide` out: the model has no bodies and no points".into()
+            }
+            Self::NothingToHide { name, known } => {
+                suggest(name, known, &format!("the bodies and points are {}", listed(known)))
             }
             Self::Pointlike { .. } => {
                 "give it `inertia` and `rotation` or `angular_velocity`, or attach it by a `joint`".into()

@@ -9,6 +9,7 @@ use pc_mech::{Interpolation, KnownRates};
 use crate::diagnostics::source::{Place, Source};
 use crate::document::contact::Contact;
 use crate::document::draw::Draw;
+use crate::document::drawing::Drawing;
 use crate::document::expression::{Expression, Located, Name, NamedExpression};
 use crate::document::inertia::Inertia;
 use crate::document::joints::{Point, TreeBody};
@@ -68,6 +69,8 @@ pub struct Document {
     pub units: Vec<NamedUnit>,
     /// `[[draw]]`
     pub draw: Vec<Draw>,
+    /// `[drawing]`
+    pub drawing: Drawing,
     /// `[hamilton_jacobi]`
     pub hamilton_jacobi: Option<HamiltonJacobi>,
     /// `[events.NAME]`, then the ends of contacts.

@@ -40,6 +40,15 @@ pub enum DrawnShape {
         /// Its radius.
         radius: Expression,
     },
+    /// A ring: the edge of a disc.
+    Ring {
+        /// Its centre.
+        at: DrawnPlace,
+        /// A vector perpendicular to the ring.
+        normal: Option<DrawnPlace>,
+        /// Its radius.
+        radius: Expression,
+    },
     /// A sphere.
     Sphere {
         /// Its centre.
@@ -81,6 +90,7 @@ const KINDS: &[(&str, Keys)] = &[
     ("point", Keys(&["kind", "at"])),
     ("line", Keys(&["kind", "through"])),
     ("disc", Keys(&["kind", "at", "normal", "radius"])),
+    ("ring", Keys(&["kind", "at", "normal", "radius"])),
     ("sphere", Keys(&["kind", "at", "radius"])),
     ("box", Keys(&["kind", "at", "size", "rotation"])),
     ("spring", Keys(&["kind", "from", "to"])),
@@ -118,11 +128,14 @@ fn entry(item: &Item<'_>) -> Result<Draw, ModelError> {
             let corners = through.parts(LINES, "2 to 64 places", THROUGH)?;
             DrawnShape::Line { through: corners.iter().map(place).collect::<Result<_, _>>()? }
         }
-        "disc" => DrawnShape::Disc {
-            at: at()?,
-            normal: part("normal").as_ref().map(place).transpose()?,
-            radius: wanted("radius", "radius = \"r\"")?.expression()?,
-        },
+        "disc" | "ring" => {
+            let (at, normal) = (at()?, part("normal").as_ref().map(place).transpose()?);
+            let radius = wanted("radius", "radius = \"r\"")?.expression()?;
+            match kind.text()?.value.as_str() {
+                "disc" => DrawnShape::Disc { at, normal, radius },
+                _ => DrawnShape::Ring { at, normal, radius },
+            }
+        }
         "sphere" => {
             DrawnShape::Sphere { at: at()?, radius: wanted("radius", "radius = \"r\"")?.expression()? }
         }

@@ -18,7 +18,8 @@ use crate::document::contents::Document;
 use crate::document::loops::{self, Loop};
 use crate::document::reader::{Item, Table};
 use crate::document::{
-    bodies, checks, contacts, draw, functions, hanging, inputs, sections, simulation, syntax, tree, units,
+    bodies, checks, contacts, draw, drawing, functions, hanging, inputs, sections, simulation, syntax, tree,
+    units,
 };
 
 impl Document {
@@ -47,6 +48,7 @@ impl Document {
         checks::require_bodies(&document)?;
         checks::check_tolerances(&document)?;
         units::check_units(&document)?;
+        drawing::check(&document)?;
         Ok(document)
     }
 
@@ -96,6 +98,7 @@ impl Document {
             "integrals" => self.integrals = table.declarations()?,
             "outputs" => self.outputs = table.declarations()?,
             "units" => self.units = units::units(&table)?,
+            "drawing" => self.drawing = drawing::drawing(&table)?,
             "hamilton_jacobi" => self.hamilton_jacobi = Some(sections::hamilton_jacobi(&table)?),
             "events" => self.events = simulation::events(&table)?,
             _ => self.simulation = simulation::simulation(&table)?,

@@ -270,6 +270,10 @@ impl<'a> Item<'a> {
         }
     }
 
+    pub(super) fn is_boolean(&self) -> bool {
+        matches!(self.value, DeValue::Boolean(_))
+    }
+
     pub(super) fn boolean(&self) -> Result<Located<bool>, ModelError> {
         match self.value {
             DeValue::Boolean(value) => Ok(self.located(*value)),
@@ -309,7 +313,7 @@ impl<'a> Item<'a> {
         }
     }
 
-    fn raw(&self) -> &'a str {
+    pub(super) fn raw(&self) -> &'a str {
         self.source.slice(self.place.span.clone())
     }
 

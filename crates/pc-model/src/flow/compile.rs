@@ -183,7 +183,7 @@ impl Model {
     }
 
     /// The inputs that have tables.
-    pub(crate) fn signals(&self) -> Signals {
+    pub fn signals(&self) -> Signals {
         let names: Vec<&str> = self.parameters().map(|(name, _)| name).collect();
         let tables = self.parameter_values().tables().into_iter();
         Signals::new(tables.map(|(place, table)| (names[place], place, Arc::clone(table))))

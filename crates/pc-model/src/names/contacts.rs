@@ -78,6 +78,22 @@ impl<'g, 'd> Scope<'g, 'd> {
         Ok(Some(value))
     }
 
+    /// The point of a contact, then its normal and two tangents; `None` if the motion of the body depends on the contact itself.
+    pub(crate) fn directions_of_contact(
+        &mut self,
+        number: usize,
+    ) -> Result<Option<(Vector<'g>, [Vector<'g>; 3])>, ModelError> {
+        let mut point = [Expr::ZERO; 3];
+        for (k, part) in point.iter_mut().enumerate() {
+            let Some(value) = self.contact(number, k)? else { return Ok(None) };
+            *part = value;
+        }
+        let contact = &self.document.contacts[number];
+        let normal = self.ground(contact)?.normal;
+        let [first, second] = tangents(contact.first_tangent(), &normal);
+        Ok(Some((point, [normal, first, second])))
+    }
+
     /// How far the point of contact with this number is beside the normal, for each of its coordinates, and the place of the
     /// centre of the shape along each of these.
     pub(crate) fn point_off_body(&mut self, number: usize) -> Result<Vec<(Expr<'g>, Expr<'g>)>, ModelError> {

@@ -5,8 +5,10 @@
 //! about their common mass centre. All vectors are along fixed axes. `ZMP_x` and `ZMP_y` are the point of the plane
 //! z = 0 about which whatever holds the bodies against their weight has no moment along that plane.
 
+use std::borrow::Cow;
+
 use pc_expr::parse::Span;
-use pc_mech::{Expr, Tree, TreeBody};
+use pc_mech::{Expr, System, Tree, TreeBody};
 
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::meaning::MeaningError;
@@ -267,6 +269,24 @@ impl<'g> Scope<'g, '_> {
             })
         };
         Ok(document.tree.iter().zip(masses).filter_map(moving).collect()) // the tree has all of them
+    }
+
+    /// The bodies on joints with their masses: those of the system, which keeps them where no other inertia is added to theirs.
+    pub(crate) fn tree_of<'t>(
+        &mut self,
+        system: &'t System<'g>,
+    ) -> Result<Option<Cow<'t, Tree<'g>>>, ModelError> {
+        let document = self.document;
+        match system.tree() {
+            Some(tree) => Ok(Some(Cow::Borrowed(tree))),
+            None if document.tree.is_empty() => Ok(None),
+            None => {
+                let bodies =
+                    document.tree.iter().map(|body| self.massive(body)).collect::<Result<Vec<_>, _>>()?;
+                let tree = Tree::new(self.graph, bodies).map_err(|error| document.derivation_error(error))?;
+                Ok(Some(Cow::Owned(tree)))
+            }
+        }
     }
 
     /// A body on its joint, with its mass but without forces.

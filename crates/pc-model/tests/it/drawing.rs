@@ -1,7 +1,7 @@
 //! `[[draw]]`, and the shapes drawn automatically.
 
-use pc_mech::Graph;
-use pc_model::{Builtin, Document, Model, ModelError, Shape, Source};
+use pc_mech::{Expr, Graph};
+use pc_model::{Arrow, Assembly, Builtin, Document, Model, ModelError, Quantity, Shape, Source};
 
 fn read(draw: &str) -> Result<Model, ModelError> {
     let text = format!(
@@ -61,6 +61,178 @@ fn a_body_that_turns_is_the_box_of_its_inertia() {
     assert_eq!(with_end[..2], ["0, 0, 0, cos(plate), sin(plate), 0", "0, 0, 0"]);
     let own = drawn(&read(&format!("{body}[[draw]]\nkind = \"point\"\nat = [0, 0]\n"))).unwrap();
     assert_eq!(own, ["0, 0, 0", "0, 0, 0"]);
+}
+
+/// A hub on the world with two arms, of which one ends at a point.
+const ARMS: &str = "[bodies.hub]\njoint = { kind = \"revolute\", axis = [0, 0, 1] }\nmass = 1.0\ninertia = [1, 1, 1]\n\
+     [bodies.left]\nparent = \"hub\"\njoint = { kind = \"revolute\", axis = [0, 0, 1], at = [1, 0, 0] }\nmass = 1.0\n\
+     center = [0.5, 0, 0]\ninertia = [1, 1, 1]\n[points.tip]\nbody = \"left\"\nat = [1, 0, 0]\n";
+
+#[test]
+fn what_is_hidden_is_not_drawn() {
+    let shapes = |drawing: &str| {
+        let document = Document::parse(Source::new("model.toml", format!("{ARMS}{drawing}"))).unwrap();
+        drawn(&Model::new(document)).unwrap()
+    };
+    // Rod and mass centre of each body, and the point.
+    let all = shapes("");
+    assert_eq!(all.len(), 5, "{all:?}");
+    assert_eq!(shapes("[drawing]\nhide = false\nup = [0, 0, 1]\n"), all);
+    assert_eq!(shapes("[drawing]\nhide = [\"hub\"]\n"), all[2..]);
+    // Without the point, the rod of the arm ends at its mass centre.
+    let without_tip = shapes("[drawing]\nhide = [\"tip\"]\n");
+    assert_eq!((&without_tip[..2], without_tip.len()), (&all[..2], 4));
+    assert!(without_tip[2].ends_with(&format!(", {}", without_tip[3])), "{without_tip:?}");
+    let own = shapes("[drawing]\nhide = true\n[[draw]]\nkind = \"point\"\nat = [\"tip_x\", 0]\n");
+    assert_eq!(own.len(), 1, "{own:?}");
+}
+
+#[test]
+fn a_drawing_of_what_is_not_there_is_refused_in_full() {
+    let refused = |text: String| Document::parse(Source::new("m.toml", text)).unwrap_err().to_string();
+    let of = |drawing: &str| {
+        let text = refused(format!("[drawing]\n{drawing}\n{ARMS}"));
+        text.trim_end().to_owned()
+    };
+    assert_eq!(
+        of("hide = [\"left\", \"tib\"]"),
+        "m.toml:2:17: [drawing] hide: no body or point is called `tib`\n    hide = [\"left\", \"tib\"]\n                    ^^^^^\n  \
+         help: did you mean `tip`? The bodies and points are hub, left, tip"
+    );
+    assert_eq!(
+        of("hide = \"left\""),
+        "m.toml:2:8: [drawing] hide: expected true or a list of names, found a string\n    hide = \"left\"\n           ^^^^^^\n  \
+         help: write `[\"NAME\"]`"
+    );
+    assert_eq!(
+        of("up = [0, 1, 1]"),
+        "m.toml:2:6: [drawing] up: expected a direction along one of the fixed axes, found [0, 1, 1]\n    up = [0, 1, 1]\n         ^^^^^^^^^\n  \
+         help: write `up = [0, 0, 1]`"
+    );
+    assert!(of("up = [1]").contains("2 or 3 numbers"));
+    assert!(of("down = [0, 0, 1]").contains("The entries here are hide, up"));
+    let nothing =
+        refused("coordinates.x = 1\nlagrangian.kinetic = \"x'^2\"\ndrawing.hide = [\"x\"]".to_owned());
+    assert!(nothing.contains("the model has no bodies and no points"), "{nothing}");
+}
+
+#[test]
+fn a_free_body_that_carries_others_is_a_box() {
+    for (name, boxes) in [("satellite", 4), ("quadruped", 5)] {
+        let model = Model::new(Builtin::named(name).unwrap().document().unwrap());
+        let graph = Graph::new();
+        let assembly = model.assemble(&graph).unwrap();
+        let shapes = model.drawing(&assembly).unwrap();
+        assert!(matches!(shapes[0], Shape::Box { .. }), "{name}: {:?}", shapes[0]);
+        let count = shapes.iter().filter(|shape| matches!(shape, Shape::Box { .. })).count();
+        assert_eq!(count, boxes, "{name}: also the wheels, or the hips");
+    }
+}
+
+/// The values of functions, and of their rates along the motion, near the start.
+fn values_and_rates<'g>(assembly: &Assembly<'g>, functions: &[Expr<'g>]) -> (Vec<f64>, Vec<f64>) {
+    let (system, graph) = (&assembly.system, assembly.system.graph());
+    let mut at = assembly.at_start();
+    let coordinates = system.frame().coordinates();
+    at.iter_mut().filter(|(symbol, _)| coordinates.contains(symbol)).for_each(|(_, value)| *value += 0.3);
+    at.extend(system.parameters());
+    let velocities = system.frame().velocities(system.quasi_velocities());
+    let rate = |&f: &Expr<'g>| {
+        let by_time = graph.gradient(f, &[system.frame().time()])[0];
+        graph.dot(graph.gradient(f, coordinates), velocities.iter().copied()) + by_time
+    };
+    let rates: Vec<Expr<'g>> = functions.iter().map(rate).collect();
+    (graph.evaluate(functions, &at).unwrap(), graph.evaluate(&rates, &at).unwrap())
+}
+
+fn close(found: &[f64], wanted: &[f64]) -> bool {
+    let size = wanted.iter().fold(1.0f64, |size, value| size.max(value.abs()));
+    found.len() == wanted.len() && found.iter().zip(wanted).all(|(f, w)| (f - w).abs() < 1e-10 * size)
+}
+
+fn across(a: &[f64], b: &[f64]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// ė = ω × e for the axes e of the drawings, with ω of the models along these axes.
+#[test]
+fn what_is_drawn_turns_as_the_model_does() {
+    for (name, columns, omega) in [
+        // The columns of the rotation of the box.
+        ("quadrotor", [[9, 12, 15], [10, 13, 16], [11, 14, 17]], ["p", "q", "s"]),
+        // The normal of the inner ring, its bearings, and the axis of the disc.
+        ("gimbals", [[22, 23, 24], [29, 30, 31], [41, 42, 43]], ["u*cos(β)", "v", "u*sin(β)"]),
+    ] {
+        let model = Model::new(Builtin::named(name).unwrap().document().unwrap());
+        let graph = Graph::new();
+        let assembly = model.assemble(&graph).unwrap();
+        let shapes = model.drawing(&assembly).unwrap();
+        let functions: Vec<Expr<'_>> = shapes.iter().flat_map(Shape::functions).collect();
+        let omega = omega.map(|text| text.to_owned());
+        let along = omega.map(|text| model.function(&assembly, &text).unwrap());
+        let all: Vec<Expr<'_>> = columns.iter().flatten().map(|&i| functions[i]).chain(along).collect();
+        let (values, rates) = values_and_rates(&assembly, &all);
+        let axes: Vec<&[f64]> = values[..9].chunks(3).collect();
+        let omega: Vec<f64> =
+            (0..3).map(|k| (0..3).map(|axis| values[9 + axis] * axes[axis][k]).sum()).collect();
+        for (axis, rate) in axes.iter().zip(rates.chunks(3)) {
+            assert!(close(rate, &across(&omega, axis)), "{name}: {axis:?}, {rate:?}");
+        }
+        let handed = across(axes[0], axes[1]);
+        assert!(close(&handed, axes[2]), "{name}: {axes:?}");
+    }
+}
+
+fn of<'a, 'g>(arrows: &'a [Arrow<'g>], quantity: Quantity) -> impl Iterator<Item = &'a Arrow<'g>> {
+    arrows.iter().filter(move |arrow| arrow.quantity == quantity)
+}
+
+/// ṙ is the rate of the place where its arrow begins.
+#[test]
+fn arrows_of_velocity_begin_at_what_moves_so() {
+    let mut count = 0;
+    for builtin in Builtin::all() {
+        let model = Model::new(builtin.document().unwrap());
+        let graph = Graph::new();
+        let assembly = model.assemble(&graph).unwrap();
+        let arrows = model.arrows(&assembly).unwrap();
+        let velocities: Vec<&Arrow<'_>> = of(&arrows, Quantity::Velocity).collect();
+        let places: Vec<Expr<'_>> = velocities.iter().flat_map(|arrow| arrow.at).collect();
+        let vectors: Vec<Expr<'_>> = velocities.iter().flat_map(|arrow| arrow.vector).collect();
+        let (_, rates) = values_and_rates(&assembly, &places);
+        let (vectors, _) = values_and_rates(&assembly, &vectors);
+        // The frames of joints have unit quaternions, which the values here are not.
+        if assembly.system.unit_quaternions().is_empty() {
+            assert!(close(&vectors, &rates), "{}: {vectors:?}, {rates:?}", builtin.name);
+            count += velocities.len();
+        }
+    }
+    assert!(count > 40, "{count} arrows");
+}
+
+/// A rotor on a tilted axis in a turning fork: ω = Ω e_z + n e, and its weight is at the mass centre.
+#[test]
+fn arrows_of_a_rotor_in_a_fork() {
+    let text = "[bodies.fork]\njoint = { kind = \"revolute\", axis = [0, 0, 1] }\ninertia = [0, 0, 1]\n\
+                [bodies.rotor]\nparent = \"fork\"\njoint = { kind = \"revolute\", axis = [0, 0, 1], at = [1, 0, 0], turns = [[\"y\", 0.5]] }\n\
+                mass = 2.0\ninertia = [1, 1, 1]\nforce = [\"3*fork'\", 0, 0]\n\
+                [quasi_velocities]\n\"fork'\" = 0.7\n\"rotor'\" = 5.0\n[gravity]\nacceleration = [0, 0, -9.81]\n";
+    let model = Model::new(Document::parse(Source::new("model.toml", text)).unwrap());
+    let graph = Graph::new();
+    let assembly = model.assemble(&graph).unwrap();
+    let arrows = model.arrows(&assembly).unwrap();
+    let vectors = |quantity| -> Vec<f64> {
+        let functions: Vec<Expr<'_>> = of(&arrows, quantity)
+            .filter(|arrow| arrow.of == "rotor")
+            .flat_map(|arrow| arrow.vector)
+            .collect();
+        values_and_rates(&assembly, &functions).0
+    };
+    // The fork stands at 0.3 there.
+    let ([sin, cos], [s, c]) = ([0.3f64.sin(), 0.3f64.cos()], [0.5f64.sin(), 0.5f64.cos()]);
+    assert!(close(&vectors(Quantity::Velocity), &[-0.7 * sin, 0.7 * cos, 0.0]));
+    assert!(close(&vectors(Quantity::AngularVelocity), &[5.0 * s * cos, 5.0 * s * sin, 0.7 + 5.0 * c]));
+    assert!(close(&vectors(Quantity::Force), &[0.0, 0.0, -19.62, 2.1, 0.0, 0.0]));
 }
 
 #[test]

@@ -59,7 +59,7 @@ impl Bounds {
                 rest = after;
                 bounds.stretch(vector(own, 0), reach(shape, own));
                 match shape {
-                    SceneShape::Disc => {
+                    SceneShape::Disc | SceneShape::Ring => {
                         let normal = vector(own, 3);
                         (0..3).for_each(|k| bounds.across[k] = bounds.across[k].max(normal[k].abs()));
                     }
@@ -87,7 +87,7 @@ impl Bounds {
 /// The extent of a shape around its first point.
 fn reach(shape: &SceneShape, numbers: &[f32]) -> f64 {
     let reach = match shape {
-        SceneShape::Disc => f64::from(numbers[6]).abs(),
+        SceneShape::Disc | SceneShape::Ring => f64::from(numbers[6]).abs(),
         SceneShape::Sphere => f64::from(numbers[3]).abs(),
         SceneShape::Box => length(vector(numbers, 3)) / 2.0,
         _ => 0.0,
@@ -105,8 +105,8 @@ pub(super) fn length(a: [f64; 3]) -> f64 {
 }
 
 impl Camera {
-    /// The direction up is opposite to gravity; without gravity it is the third axis, or the second for a
-    /// motion in a plane perpendicular to the third.
+    /// The direction up is that of the text, or opposite to gravity; without either it is the third axis, or the second
+    /// for a motion in a plane perpendicular to the third.
     pub(super) fn of(scene: &Scene, paper: [f64; 2]) -> Camera {
         let Bounds { low, high, least, most, across } = Bounds::of(scene);
         let is_known = [0, 1, 2].map(|k| low[k].is_finite());
@@ -120,10 +120,10 @@ impl Camera {
         let is_plane =
             narrow < NOTHING * size && across[(flat + 1) % 3] < NOTHING && across[(flat + 2) % 3] < NOTHING;
         let default = if is_plane && flat == 2 { 1 } else { 2 };
-        let gravity = scene.gravity;
+        let down = scene.down();
         let mut up = default;
         let mut steepest = 0.0;
-        for (k, g) in gravity.iter().enumerate() {
+        for (k, g) in down.iter().enumerate() {
             if g.abs() > steepest {
                 (steepest, up) = (g.abs(), k);
             }
@@ -131,7 +131,7 @@ impl Camera {
         if is_plane && up == flat {
             up = default;
         }
-        let sign = if gravity[up] > 0.0 { -1.0 } else { 1.0 };
+        let sign = if down[up] > 0.0 { -1.0 } else { 1.0 };
         let right = if is_plane { 3 - up - flat } else { (up + 1) % 3 };
         let away = 3 - up - right;
         // A right-handed system, also where up is the negative end of an axis.
@@ -168,7 +168,13 @@ mod tests {
 
     fn scene(points: &[[f32; 3]], gravity: [f64; 3]) -> Scene {
         let times = (0..points.len()).map(|i| i as f64).collect();
-        Scene { shapes: vec![SceneShape::Point(None)], times, stills: points.concat(), gravity }
+        Scene {
+            shapes: vec![SceneShape::Point(None)],
+            times,
+            stills: points.concat(),
+            gravity,
+            ..Scene::default()
+        }
     }
 
     #[test]

@@ -53,6 +53,11 @@ pub(super) fn draw(
             let rim = rim(at, vector(numbers, 3), f64::from(numbers[6])).map(place);
             outlined(drawing, rim.collect(), ink, 0.35);
         }
+        SceneShape::Ring => {
+            let mut rim: Vec<_> = rim(at, vector(numbers, 3), f64::from(numbers[6])).map(place).collect();
+            rim.extend(rim.first().copied());
+            drawing.line(rim, ink);
+        }
         SceneShape::Box => {
             let edges = vector(numbers, 3);
             let corner = |bits: usize| {

@@ -53,6 +53,7 @@ impl SceneShape {
         match self {
             SceneShape::Point(_)
             | SceneShape::Disc
+            | SceneShape::Ring
             | SceneShape::Sphere
             | SceneShape::Box
             | SceneShape::Trace => true,

@@ -1,7 +1,7 @@
-// The motion as the page contains it: shapes, times, and the numbers of all shapes still by still.
+// The motion as the page contains it: shapes, arrows, times, and the numbers of all of them still by still.
 
 // Shapes with a colour of their own; the others have that of rods.
-const COLOURED = new Set(["point", "disc", "sphere", "box", "trace"]);
+const COLOURED = new Set(["point", "disc", "ring", "sphere", "box", "trace"]);
 const COLOURS = 8;
 
 // Numbers in IEEE 754 single precision, least significant byte first, encoded in base 64.
@@ -13,7 +13,7 @@ function numbers(text) {
 
 // From the text of the data, or from what is already read from it.
 export function decoded(source) {
-  const { shapes: listed, times, frames, gravity } = typeof source === "string" ? JSON.parse(source) : source;
+  const { shapes: listed, arrows = [], times, frames, gravity, up, width: all } = typeof source === "string" ? JSON.parse(source) : source;
   let width = 0;
   let hue = 0;
   const shapes = listed.map(([kind, count, words]) => {
@@ -22,7 +22,15 @@ export function decoded(source) {
     hue += COLOURED.has(kind) ? 1 : 0;
     return shape;
   });
-  return { shapes, width, gravity, times: numbers(times), stills: numbers(frames) };
+  return {
+    shapes,
+    arrows: arrows.map(([quantity, of, at, vector]) => ({ quantity, of, at, vector })),
+    width: all ?? width,
+    // The direction in which things are seen to fall.
+    down: up ? up.map((part) => -part) : gravity,
+    times: numbers(times),
+    stills: numbers(frames),
+  };
 }
 
 // The offsets of the positions among the numbers of a shape.
@@ -39,7 +47,7 @@ const finite = (x) => (Number.isFinite(x) ? Math.abs(x) : 0);
 export function reachOf(shape, numbers, start = 0) {
   const at = start + shape.at;
   const own = (k) => finite(numbers[at + k]);
-  if (shape.kind === "disc") {
+  if (shape.kind === "disc" || shape.kind === "ring") {
     const normal = [own(3), own(4), own(5)];
     const square = normal.reduce((sum, x) => sum + x * x, 0) || 1;
     return normal.map((x) => own(6) * Math.sqrt(Math.max(0, 1 - (x * x) / square)));

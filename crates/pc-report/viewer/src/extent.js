@@ -68,7 +68,7 @@ export function measured(data, before) {
   const slack = before === undefined ? 1 : before ? 1 / SLACK : SLACK;
   const follows = model > NOTHING * path && path > slack * long * model;
   const size = (follows ? model : path) || 1;
-  const { right, up, isTop } = directions(data.gravity, flat);
+  const { right, up, isTop } = directions(data.down, flat);
   const isUpright = flat !== undefined && !isTop;
   return { size, follows, flat, right, up, isTop, isUpright, middle: all.middle(), low: all.low, high: all.high, centres };
 }
@@ -90,7 +90,7 @@ function staysIn({ shapes, stills, width }, flat) {
   for (const shape of shapes) {
     for (let i = shape.at; i < stills.length; i += width) {
       const isTilted = (x, k) => k !== flat && Math.abs(x) > NOTHING;
-      if (shape.kind === "disc" && stills.subarray(i + 3, i + 6).some(isTilted)) {
+      if ((shape.kind === "disc" || shape.kind === "ring") && stills.subarray(i + 3, i + 6).some(isTilted)) {
         return false;
       }
       const rotation = { box: 6, axes: 3 }[shape.kind];
@@ -106,15 +106,15 @@ function staysIn({ shapes, stills, width }, flat) {
   return true;
 }
 
-// The directions right and up of the front view. Up is against gravity; without gravity it is the third axis, or
-// the second for a motion in a plane perpendicular to the third.
-function directions(gravity, flat) {
-  const steepest = Math.max(...gravity.map(Math.abs));
+// The directions right and up of the front view. Where nothing says which way is down, up is the third axis, or the second
+// for a motion in a plane perpendicular to the third.
+function directions(down, flat) {
+  const steepest = Math.max(...down.map(Math.abs));
   let axis = flat === 2 ? 1 : 2;
   let sign = 1;
   if (steepest > 0) {
-    axis = gravity.findIndex((g) => Math.abs(g) === steepest);
-    sign = gravity[axis] > 0 ? -1 : 1;
+    axis = down.findIndex((g) => Math.abs(g) === steepest);
+    sign = down[axis] > 0 ? -1 : 1;
   }
   const isTop = flat === axis;
   let right = axis === 0 ? 1 : 0;

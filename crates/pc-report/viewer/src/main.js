@@ -3,6 +3,8 @@
 
 import { Vector3 } from "three";
 import { Anchor, anchorsOf, MODEL, NOTHING } from "./anchors.js";
+import { ArrowButtons } from "./arrowbuttons.js";
+import { Arrows } from "./arrows.js";
 import { VIEWS, Viewpoint } from "./camera.js";
 import { Clock } from "./clock.js";
 import { Compass } from "./compass.js";
@@ -13,6 +15,7 @@ import { listenToGestures } from "./gestures.js";
 import { Ground } from "./ground.js";
 import { listenToKeys } from "./keys.js";
 import { Labels } from "./labels.js";
+import { Legend } from "./legend.js";
 import { Pace } from "./pace.js";
 import { Pose } from "./pose.js";
 import { ScaleBar } from "./scalebar.js";
@@ -44,6 +47,8 @@ class Viewer {
     this.stage = new Stage(this.canvas, context, this.extent);
     this.viewpoint = new Viewpoint(isStill);
     this.size = { width: 0, height: 0 };
+    this.shownArrows = new Set();
+    this.arrowButtons = new ArrowButtons(root, this.shownArrows, () => this.request());
     this.build(data, this.extent.follows ? MODEL : NOTHING);
     this.showsTrails = this.trails.areWanted;
     this.actions = this.listActions();
@@ -67,11 +72,14 @@ class Viewer {
     this.pose = new Pose(data);
     this.shapes = new Shapes(data, extent.size);
     this.trails = new Trails(data);
-    world.add(this.shapes.group, this.trails.group);
+    this.arrows = new Arrows(data, extent.size);
+    this.arrowButtons.offer(this.arrows.longest);
+    world.add(this.shapes.group, this.trails.group, this.arrows.group);
     this.ground = new Ground(extent, world);
     scene.add(this.ground.group);
     this.labels = new Labels(data, world, box);
     this.scaleBar = new ScaleBar(extent.size, box);
+    this.legend = new Legend(box);
     this.compass = new Compass(world, box);
     this.anchor = new Anchor(data, extent, world, followed);
   }
@@ -79,8 +87,8 @@ class Viewer {
   // Shows another motion in the same view, at the same time and with the same options.
   replace(data) {
     const { clock, extent: before, trails, anchor, viewpoint } = this;
-    const old = [this.shapes.group, this.trails.group, this.ground.group];
-    [this.labels.layer, this.scaleBar.element, this.compass.svg].forEach((element) => element.remove());
+    const old = [this.shapes.group, this.trails.group, this.arrows.group, this.ground.group];
+    [this.labels.layer, this.scaleBar.element, this.legend.element, this.compass.svg].forEach((element) => element.remove());
     const wasFitted = this.isFitted();
     const origin = new Vector3(...before.middle);
     const isDefault = anchor.chosen === (before.follows ? MODEL : NOTHING);
@@ -214,7 +222,7 @@ class Viewer {
   }
 
   colour() {
-    for (const part of [this.stage, this.ground, this.shapes, this.trails]) {
+    for (const part of [this.stage, this.ground, this.shapes, this.trails, this.arrows]) {
       part.colour(this.theme);
     }
   }
@@ -263,6 +271,7 @@ class Viewer {
     const position = clock.position();
     pose.set(position);
     this.shapes.update(pose.numbers);
+    this.arrows.update(pose.numbers, this.shownArrows);
     this.trails.group.visible = this.showsTrails;
     this.trails.update(position);
     this.anchor.at(position, viewpoint.anchor);
@@ -273,13 +282,16 @@ class Viewer {
     this.ground.follow(target, directions, viewpoint.halfHeight());
     this.stage.render(viewpoint.camera);
     this.labels.update(pose.numbers, (point) => viewpoint.seen(point, size), size);
-    this.scaleBar.update(size.height / (2 * viewpoint.halfHeight()), size.width);
+    const perSize = size.height / (2 * viewpoint.halfHeight());
+    this.scaleBar.update(perSize, size.width);
+    this.legend.update(this.shownArrows, (quantity) => (this.arrows.scale(quantity) * perSize) / this.extent.size, size.width);
     this.compass.update(directions);
     if (this.told !== clock.now) {
       this.told = clock.now;
       tell(clock.now);
     }
     this.controls.update({ loop: clock.loops, trails: this.showsTrails, flat: viewpoint.isFlat });
+    this.arrowButtons.update();
   }
 
   // What is on the screen, for those who look at it from outside.

@@ -34,6 +34,7 @@ _SECTIONS = (
     "forces",
     "integrals",
     "outputs",
+    "drawing",
     "events",
     "simulation",
 )
@@ -242,6 +243,13 @@ class Builder(Generic[M]):
         # The name of a starting point, `from`, is a keyword of Python.
         entries = {key.rstrip("_"): value for key, value in entries.items()}
         self._drawn.append({key: entry(key, value) for key, value in {"kind": kind, **entries}.items()})
+        return self
+
+    def drawing(self, *, hide: bool | Sequence[str] | None = None, up: Sequence[float] | None = None) -> Builder[M]:
+        """Bodies and points that animations do not draw by themselves, and the direction that is up, as in ``[drawing]`` of a text."""
+        for key, value in (("hide", hide), ("up", up)):
+            if value is not None:
+                self._put("drawing", (key,), entry(key, value))
         return self
 
     def gravity(self, acceleration: Sequence[Any]) -> Builder[M]:

@@ -50,7 +50,7 @@ def formula(value: Any) -> str:
 
 
 #: Entries whose texts are names rather than expressions.
-_NAMES = frozenset(("kind", "body", "bodies", "parent", "coordinates", "quasi_velocities", "shape", "motion", "text"))
+_NAMES = frozenset(("kind", "body", "bodies", "parent", "coordinates", "quasi_velocities", "shape", "motion", "text", "hide"))
 
 
 def entry(key: str, value: Any) -> str:

@@ -7,11 +7,12 @@ import { Disc } from "./disc.js";
 import { Line } from "./line.js";
 import { colour } from "./material.js";
 import { Point } from "./point.js";
+import { Ring } from "./ring.js";
 import { Sphere } from "./sphere.js";
 import { Spring } from "./spring.js";
 
 const BUILDERS = {
-  axes: Axes, box: Box, disc: Disc, line: Line, point: Point, sphere: Sphere, spring: Spring,
+  axes: Axes, box: Box, disc: Disc, line: Line, point: Point, ring: Ring, sphere: Sphere, spring: Spring,
 };
 
 export class Shapes {
