@@ -6,7 +6,7 @@
 //! `external_force`, `brackets`, `joint_reactions`, `friction_of_contacts`, `constraints` with `constraint_treatment`, `body_reactions` and
 //! the names of a `resultant`, `action`, `event` and `events` with the `stops` of joints, and the quasi-velocities `given` in addition to those of the text;
 //! `trial`, `definite`, `inertia` and `orientations` check the start. A `function`, a `drawing` and its `arrows` are assembled
-//! separately, on request: a `shape` is a shape of the text or part of the `outlines` of bodies, among them the `block` of a body.
+//! separately, on request: a `shape` is a shape of the text or part of the `outlines` of bodies, among them the `block` of a body, at what is `placed`.
 
 pub(crate) mod action;
 pub(crate) mod arrows;
@@ -34,6 +34,7 @@ pub(crate) mod joint_reactions;
 pub(crate) mod orientations;
 mod outlines;
 pub(crate) mod parameters;
+mod placed;
 mod points_of_contact;
 pub(crate) mod resultant;
 pub(crate) mod shape;

@@ -3,7 +3,7 @@
 use pc_mech::{BodyVelocity, Expr, Matrix};
 
 use crate::assembly::assembly::Assembly;
-use crate::assembly::drawing::{rotation, spot};
+use crate::assembly::placed::{rotation, spot};
 use crate::assembly::resultant::{force_names, joint_force_names};
 use crate::assembly::shape::Spot;
 use crate::diagnostics::error::ModelError;

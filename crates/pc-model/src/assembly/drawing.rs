@@ -4,6 +4,7 @@ use pc_mech::{Expr, Matrix};
 
 use crate::assembly::assembly::Assembly;
 use crate::assembly::outlines::Outlines;
+use crate::assembly::placed::{rotation, spot};
 use crate::assembly::shape::{Shape, Spot};
 use crate::diagnostics::error::ModelError;
 use crate::document::{Draw, DrawnShape, Expression};
@@ -70,29 +71,4 @@ fn resolved<'g>(scope: &mut Scope<'g, '_>, draw: &Draw) -> Result<Shape<'g>, Mod
         DrawnShape::Trace { at: place } => Shape::Trace { at: at(place)? },
         DrawnShape::Text { at: place, text } => Shape::Text { at: at(place)?, text: text.value.clone() },
     })
-}
-
-/// A position in space; two expressions give a position in the plane.
-pub(super) fn spot<'g>(
-    scope: &mut Scope<'g, '_>,
-    place: &[Expression],
-    stage: Stage,
-) -> Result<Spot<'g>, ModelError> {
-    let mut at = [Expr::ZERO; 3];
-    for (value, expression) in at.iter_mut().zip(place) {
-        *value = scope.resolve(expression, stage)?;
-    }
-    Ok(at)
-}
-
-pub(super) fn rotation<'g>(
-    scope: &mut Scope<'g, '_>,
-    entries: &[Expression; 9],
-    stage: Stage,
-) -> Result<Matrix<Expr<'g>>, ModelError> {
-    let mut values = [Expr::ZERO; 9];
-    for (value, expression) in values.iter_mut().zip(entries) {
-        *value = scope.resolve(expression, stage)?;
-    }
-    Ok(Matrix::from_fn(3, 3, |i, j| values[3 * i + j]))
 }

@@ -4,7 +4,7 @@ use pc_mech::{Expr, Matrix, Tree, TreeBody};
 
 use crate::assembly::assembly::Assembly;
 use crate::assembly::block::Block;
-use crate::assembly::drawing::{rotation, spot};
+use crate::assembly::placed::{rotation, spot};
 use crate::assembly::shape::{Shape, Spot};
 use crate::diagnostics::error::ModelError;
 use crate::document::{Body, Document, Expression, Inertia, JointKind, Orientation};

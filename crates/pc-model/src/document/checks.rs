@@ -112,6 +112,21 @@ impl Document {
     }
 }
 
+/// What a drawing hides has to be there.
+pub(super) fn check_hidden(document: &Document) -> Result<(), ModelError> {
+    let bodies = document.bodies.iter().map(|body| &body.name);
+    let on_joints = document.tree.iter().map(|body| &body.name);
+    let points = document.points.iter().map(|point| &point.name);
+    let known: Vec<String> = bodies.chain(on_joints).chain(points).map(|name| name.text.clone()).collect();
+    match document.drawing.hide.iter().find(|hidden| !known.contains(&hidden.value)) {
+        None => Ok(()),
+        Some(stray) => {
+            let kind = ErrorKind::NothingToHide { name: stray.value.clone(), known };
+            Err(document.source.error(&stray.place, kind))
+        }
+    }
+}
+
 /// Checks that a name has only one meaning.
 pub(super) fn check_names(document: &Document) -> Result<(), ModelError> {
     let mut names = document.declared_names();

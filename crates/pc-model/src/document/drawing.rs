@@ -3,7 +3,6 @@
 use super::reader::{Item, Table};
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::ErrorKind;
-use crate::document::contents::Document;
 use crate::document::expression::Located;
 
 /// What `[[draw]]` cannot say of the drawing as a whole.
@@ -55,19 +54,4 @@ fn up(item: &Item<'_>) -> Result<[f64; 3], ModelError> {
     }
     let sign = |part: &f64| if *part == 0.0 { 0.0 } else { part.signum() };
     Ok([0, 1, 2].map(|k| given.get(k).map_or(0.0, sign)))
-}
-
-/// Checks that what is hidden is there.
-pub(super) fn check(document: &Document) -> Result<(), ModelError> {
-    let bodies = document.bodies.iter().map(|body| &body.name);
-    let on_joints = document.tree.iter().map(|body| &body.name);
-    let points = document.points.iter().map(|point| &point.name);
-    let known: Vec<String> = bodies.chain(on_joints).chain(points).map(|name| name.text.clone()).collect();
-    match document.drawing.hide.iter().find(|hidden| !known.contains(&hidden.value)) {
-        None => Ok(()),
-        Some(stray) => {
-            let kind = ErrorKind::NothingToHide { name: stray.value.clone(), known };
-            Err(document.source.error(&stray.place, kind))
-        }
-    }
 }

@@ -48,7 +48,7 @@ impl Document {
         checks::require_bodies(&document)?;
         checks::check_tolerances(&document)?;
         units::check_units(&document)?;
-        drawing::check(&document)?;
+        checks::check_hidden(&document)?;
         Ok(document)
     }
 

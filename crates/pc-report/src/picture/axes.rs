@@ -194,7 +194,7 @@ mod tests {
             ["10⁻¹²", "10⁻¹⁰", "10⁻⁸", "10⁻⁶", "10⁻⁴", "10⁻²", "10⁰"]
         );
         assert_eq!(labels(Scale::Decades, 0.0, 1.0), ["1", "2", "5", "10"]);
-        assert_eq!(labels(Scale::SignedDecades(-1), -2.1, 1.1), ["0", "10⁰", "−10⁰", "−10¹"]);
+        assert_eq!(labels(Scale::SignedDecades(-1), -2.1, 1.1), ["0", "−10⁰", "10⁰", "−10¹"]);
     }
 
     #[test]

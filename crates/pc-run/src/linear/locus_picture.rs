@@ -113,7 +113,8 @@ fn said(
             0.0 => String::new(),
             imaginary => format!(" {sign} {}i", short(imaginary.abs(), 4)),
         };
-        format!("{}{imaginary} at {name} = {}", short(lambda.real, 4), short(*value, 6))
+        // Zero has no sign.
+        format!("{}{imaginary} at {name} = {}", short(lambda.real + 0.0, 4), short(*value, 6))
     };
     match (known.first(), known.last()) {
         (Some(first), Some(last)) => format!("λ{number}{mode}: from {} to {}", at(first), at(last)),
