@@ -138,7 +138,7 @@ fn check(name: &str, page: &str) {
     let sources =
         with("details").filter(|node| node.descendants().any(|n| n.text() == Some("LaTeX"))).count();
     let has_equations = !page.contains("The equations are too long to be shown here");
-    assert!(sources > if has_equations { 2 } else { 0 }, "{name}: {sources} sources of formulas");
+    assert!(sources > usize::from(has_equations), "{name}: {sources} sources of formulas");
     // Only the player and the plots need scripts. The player is hidden until its script runs, and plots are pictures.
     let players = page.matches("id=\"player\" hidden=\"hidden\"").count();
     let plots = page.matches("id=\"plots-data\"").count();

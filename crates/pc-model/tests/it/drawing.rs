@@ -102,7 +102,7 @@ fn a_drawing_of_what_is_not_there_is_refused_in_full() {
     assert_eq!(
         of("hide = \"left\""),
         "m.toml:2:8: [drawing] hide: expected true or a list of names, found a string\n    hide = \"left\"\n           ^^^^^^\n  \
-         help: write `[\"NAME\"]`"
+         help: write `hide = [\"NAME\"]`"
     );
     assert_eq!(
         of("up = [0, 1, 1]"),
