@@ -1,6 +1,7 @@
 //! The answer to a request.
 
 use std::convert::Infallible;
+use std::fmt::Display;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -69,7 +70,7 @@ impl Refusal {
         Refusal::new(StatusCode::NOT_FOUND, "")
     }
 
-    fn failed(message: impl ToString) -> Refusal {
+    fn failed(message: impl Display) -> Refusal {
         Refusal::new(StatusCode::INTERNAL_SERVER_ERROR, message.to_string())
     }
 }

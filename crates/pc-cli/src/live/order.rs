@@ -35,7 +35,7 @@ pub(super) fn printed(order: &Order) -> Option<Line> {
         "derive" => ("derive", form(job, |_| true)),
         _ => return None,
     };
-    Some(line(command, job, options, None))
+    Some(line(command, job, &options, None))
 }
 
 /// The command that makes a file, if there is one of this name.
@@ -61,10 +61,10 @@ pub(super) fn made(order: &Order) -> Option<Line> {
         "fmu" => ("emit", emitted(&["--fmu", "3"]), Written::File("fmu")),
         _ => return None,
     };
-    Some(line(command, job, options, Some(file)))
+    Some(line(command, job, &options, Some(file)))
 }
 
-fn line(command: &'static str, job: &Job, more: Vec<String>, file: Option<Written>) -> Line {
+fn line(command: &'static str, job: &Job, more: &[String], file: Option<Written>) -> Line {
     // What a sweep varies has no single value.
     let varied = |name: &str| more.iter().any(|option| option.starts_with(&format!("--vary={name}=")));
     // As one argument, a value that begins with a dash is no option.

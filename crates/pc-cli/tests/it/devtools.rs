@@ -57,18 +57,18 @@ impl Tab {
             }
         });
         let mut tab = Tab { browser, orders, messages, session: Value::Null, last: 0, events: Vec::new() };
-        let target = tab.call("Target.createTarget", json!({ "url": "about:blank" }))["targetId"].clone();
-        let attached = tab.call("Target.attachToTarget", json!({ "targetId": target, "flatten": true }));
+        let target = tab.call("Target.createTarget", &json!({ "url": "about:blank" }))["targetId"].clone();
+        let attached = tab.call("Target.attachToTarget", &json!({ "targetId": target, "flatten": true }));
         tab.session = attached["sessionId"].clone();
         for domain in ["Runtime", "Log", "Network", "Page"] {
-            tab.call(&format!("{domain}.enable"), json!({}));
+            tab.call(&format!("{domain}.enable"), &json!({}));
         }
-        tab.call("Page.navigate", json!({ "url": address }));
+        tab.call("Page.navigate", &json!({ "url": address }));
         tab
     }
 
     /// The result of a method of the protocol.
-    pub(crate) fn call(&mut self, method: &str, parameters: Value) -> Value {
+    pub(crate) fn call(&mut self, method: &str, parameters: &Value) -> Value {
         self.last += 1;
         let mut order = json!({ "id": self.last, "method": method, "params": parameters });
         if !self.session.is_null() {
@@ -89,7 +89,7 @@ impl Tab {
     /// The value of an expression of JavaScript in the page; one that is promised is waited for.
     pub(crate) fn value(&mut self, expression: &str) -> Value {
         let asked = json!({ "expression": expression, "awaitPromise": true, "returnByValue": true });
-        let mut answer = self.call("Runtime.evaluate", asked);
+        let mut answer = self.call("Runtime.evaluate", &asked);
         assert!(answer["exceptionDetails"].is_null(), "{expression}: {answer}");
         answer["result"]["value"].take()
     }

@@ -210,7 +210,8 @@ fn results_come_one_by_one() {
         .args(["run", "chaplygin-sleigh", "--set", "a=0.3", "--t-end", "3", "--rows", "401"])
         .output()
         .unwrap();
-    let end = |text: &str| text.lines().find(|line| line.starts_with("end ")).unwrap().to_owned();
+    let end =
+        |text: &str| text.lines().find(|line| line.trim_start().starts_with("end ")).unwrap().to_owned();
     let of_run = end(&String::from_utf8(run.stderr).unwrap());
     assert_eq!(end(moved.result("summary")["text"].as_str().unwrap()), of_run);
 

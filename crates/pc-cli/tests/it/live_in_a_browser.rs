@@ -12,7 +12,7 @@ use crate::live::{Live, builtin};
 /// Puts a text in place of that in the editor, as typing does.
 fn write(tab: &mut Tab, text: &str) {
     tab.value("document.querySelector('.cm-content').focus(); document.execCommand('selectAll')");
-    tab.call("Input.insertText", json!({ "text": text }));
+    tab.call("Input.insertText", &json!({ "text": text }));
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn the_page_follows_the_text() {
     // It is saved by the keyboard.
     let save =
         json!({ "type": "keyDown", "modifiers": 2, "key": "s", "code": "KeyS", "windowsVirtualKeyCode": 83 });
-    tab.call("Input.dispatchKeyEvent", save);
+    tab.call("Input.dispatchKeyEvent", &save);
     tab.until("document.querySelector('#status .note').textContent === 'saved'");
     assert_eq!(fs::read_to_string(&file).unwrap(), heavier);
 
@@ -86,7 +86,7 @@ fn the_page_follows_the_text() {
     // Neither on a screen nor on a telephone does anything stick out.
     for width in [1280, 400] {
         let size = json!({ "width": width, "height": 900, "deviceScaleFactor": 1, "mobile": false });
-        tab.call("Emulation.setDeviceMetricsOverride", size);
+        tab.call("Emulation.setDeviceMetricsOverride", &size);
         tab.until(&format!("innerWidth === {width}"));
         assert_eq!(tab.value("document.documentElement.scrollWidth - innerWidth"), 0, "{width}");
     }

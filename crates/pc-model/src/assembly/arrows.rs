@@ -91,7 +91,7 @@ impl<'a, 'd, 'g> Arrows<'a, 'd, 'g> {
         let (places, joints, list) = (Vec::new(), Vec::new(), Vec::new());
         let mut arrows = Arrows { document, assembly, scope, places, joints, list };
         for body in arrows.on_joints()?.into_iter().chain(arrows.placed()?) {
-            arrows.add(body)?;
+            arrows.add(&body)?;
         }
         Ok(arrows)
     }
@@ -138,8 +138,8 @@ impl<'a, 'd, 'g> Arrows<'a, 'd, 'g> {
         Some([0, 1, 2].map(|i| graph.dot((0..3).map(|j| rotation[(i, j)]), omega)))
     }
 
-    fn add(&mut self, body: Moving<'d, 'g>) -> Result<(), ModelError> {
-        let Moving { name, at, mass, velocity, omega, force } = body;
+    fn add(&mut self, body: &Moving<'d, 'g>) -> Result<(), ModelError> {
+        let &Moving { name, at, mass, velocity, omega, force } = body;
         let weight = self.assembly.system.gravity().map(|g| mass * g);
         let force = force.map(|force| spot(&mut self.scope, force, Stage::Dynamics)).transpose()?;
         self.places.push((name, at));

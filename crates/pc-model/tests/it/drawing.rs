@@ -168,7 +168,7 @@ fn what_is_drawn_turns_as_the_model_does() {
         let assembly = model.assemble(&graph).unwrap();
         let shapes = model.drawing(&assembly).unwrap();
         let functions: Vec<Expr<'_>> = shapes.iter().flat_map(Shape::functions).collect();
-        let omega = omega.map(|text| text.to_owned());
+        let omega = omega.map(str::to_owned);
         let along = omega.map(|text| model.function(&assembly, &text).unwrap());
         let all: Vec<Expr<'_>> = columns.iter().flatten().map(|&i| functions[i]).chain(along).collect();
         let (values, rates) = values_and_rates(&assembly, &all);

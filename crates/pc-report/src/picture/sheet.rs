@@ -155,7 +155,7 @@ fn names(drawing: &mut Drawing, panel: &Panel, [x, y]: [f64; 2], width: f64) {
         let y = y + STEP * i as f64;
         match &panel.content {
             Content::Fan(fan) if i < fan.bands.len() => {
-                drawing.area([x, y - 5.0], [x + 18.0, y + 5.0], fan.ink(i))
+                drawing.area([x, y - 5.0], [x + 18.0, y + 5.0], fan.ink(i));
             }
             Content::Fan(_) => drawing.line(vec![[x, y], [x + 18.0, y]], Ink::Curve(0)),
             _ => drawing.line(vec![[x, y], [x + 18.0, y]], Ink::Curve(i)),

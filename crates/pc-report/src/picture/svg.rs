@@ -65,7 +65,10 @@ fn separate(svg: &mut String, shapes: &[Shape]) {
                 ),
             ),
             Shape::Filled { corners, ink } => {
-                put(svg, format_args!("<path d=\"{}Z\" fill=\"{}\"/>\n", path(corners, 2), hexadecimal(*ink)))
+                put(
+                    svg,
+                    format_args!("<path d=\"{}Z\" fill=\"{}\"/>\n", path(corners, 2), hexadecimal(*ink)),
+                );
             }
             Shape::Titled { title, shapes } => {
                 put(svg, format_args!("<g><title>{}</title>\n", text(title)));
@@ -105,7 +108,10 @@ fn on_page(svg: &mut String, shapes: &[Shape]) {
                 ),
             ),
             Shape::Filled { corners, ink } => {
-                put(svg, format_args!("<path fill=\"{}\" d=\"{}Z\"/>\n", hexadecimal(*ink), path(corners, 1)))
+                put(
+                    svg,
+                    format_args!("<path fill=\"{}\" d=\"{}Z\"/>\n", hexadecimal(*ink), path(corners, 1)),
+                );
             }
             Shape::Titled { title, shapes } => {
                 put(svg, format_args!("<g><title>{}</title>\n", text(title)));
