@@ -1,7 +1,7 @@
 //! The pieces of a page, for a page that is put together elsewhere and changes while it is read.
 //!
 //! Its style is [`style`]; its scripts are [`VIEWER`], which plays the data of a [`Scene`](crate::Scene::data), and
-//! [`PLOTS`], which draws those of [`plots`]. Formulas and verdicts are [markup](equations) without scripts.
+//! [`PLOTS`], which draws those of [`plots`]. Formulas and verdicts are [markup](equations()) without scripts.
 
 use pc_model::{Assembly, Model, ModelError};
 use pc_print::{Form, Layout, displayed_equations};
