@@ -110,7 +110,7 @@ fn a_drawing_of_what_is_not_there_is_refused_in_full() {
          help: write `up = [0, 0, 1]`"
     );
     assert!(of("up = [1]").contains("2 or 3 numbers"));
-    assert!(of("down = [0, 0, 1]").contains("The entries here are hide, up"));
+    assert!(of("down = [0, 0, 1]").contains("the entries here are hide, up"));
     let nothing =
         refused("coordinates.x = 1\nlagrangian.kinetic = \"x'^2\"\ndrawing.hide = [\"x\"]".to_owned());
     assert!(nothing.contains("the model has no bodies and no points"), "{nothing}");
