@@ -4,10 +4,13 @@
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 use pulldown_cmark::{CodeBlockKind, Event, Options, Parser, Tag, TagEnd};
 use snapbox::IntoData;
+
+use crate::live::Live;
+use crate::patience::{ended, started};
 
 fn docs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
@@ -64,7 +67,8 @@ impl Desk {
     fn run(&self, command: &str) -> (String, bool) {
         let mut shell = Command::new("sh");
         let shell = shell.args(["-c", &format!("exec 2>&1; {command}")]).current_dir(&self.directory);
-        let output = shell.env("PATH", &self.path).env_remove("NO_COLOR").output().expect("a shell");
+        shell.env("PATH", &self.path).env_remove("NO_COLOR");
+        let output = ended(started(shell.stdin(Stdio::null()).stdout(Stdio::piped())));
         (String::from_utf8(output.stdout).expect("UTF-8"), output.status.success())
     }
 
@@ -150,6 +154,9 @@ fn commands_that_are_named_succeed() {
     for page in ["README.md", "crates/pc-cli/README.md", "docs/running.md"] {
         for command in shell_commands(&read(&root.join(page))) {
             println!("{page}: {command}");
+            if Live::named(desk.directory.path(), &command).is_some() {
+                continue;
+            }
             let (said, succeeds) = desk.run(&command);
             assert!(succeeds, "{page}: {command}\n{said}");
             assert!(said.lines().count() < LONGEST, "{page}: {command}: {} lines", said.lines().count());

@@ -6,6 +6,9 @@ use std::process::{Command, Output, Stdio};
 use clap::{CommandFactory, Parser};
 use pc_cli::args::command_line::Arguments;
 
+use crate::live::Live;
+use crate::patience::{ended, started};
+
 fn pc(arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_pc"));
     command.args(arguments).stdin(Stdio::null()).output().expect("pc starts")
@@ -83,12 +86,16 @@ fn the_examples_run() {
             if line.split('|').any(|part| !part.trim().starts_with("pc ")) || line.contains(['~', '$', '#']) {
                 continue;
             }
+            if Live::named(here, line).is_some() {
+                continue;
+            }
             let line =
                 line.replace("--seconds 10", "--seconds 0.1").replace("--members 1000 ", "--members 10 ");
             let script = format!("set -e; pc() {{ \"$PC\" \"$@\"; }}; {line}");
             let mut shell = Command::new("bash");
             shell.args(["-c", &script]).env("PC", env!("CARGO_BIN_EXE_pc")).current_dir(here);
-            let output = shell.stdin(Stdio::null()).output().expect("bash");
+            shell.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+            let output = ended(started(&mut shell));
             assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
             count += 1;
         }

@@ -1,14 +1,14 @@
 //! The page of `pc live`: what its server answers, to whom, and that nobody can hold it up.
 
 use std::fs;
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{Read, Write};
 use std::net::{Shutdown, TcpStream};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
 use serde_json::{Value, json};
 
-use crate::patience::{PATIENCE, Reaped, started};
+use crate::patience::{PATIENCE, Reaped, first_line, started};
 
 /// More connections than the server has at a time.
 const MANY: usize = 300;
@@ -49,11 +49,20 @@ impl Answer {
 
 impl Live {
     pub(crate) fn of(directory: &Path, model: &str) -> Live {
+        Live::with(directory, &["live", model, "--limit-time", "3600"])
+    }
+
+    /// The server that a command line of the book or of the help starts. It runs on for ever, and so cannot be tried as others are.
+    pub(crate) fn named(directory: &Path, line: &str) -> Option<Live> {
+        let arguments: Vec<&str> = line.split_whitespace().collect();
+        (arguments.get(..2)? == ["pc", "live"]).then(|| Live::with(directory, &arguments[1..]))
+    }
+
+    fn with(directory: &Path, arguments: &[&str]) -> Live {
         let mut command = Command::new(env!("CARGO_BIN_EXE_pc"));
-        command.args(["live", model, "--limit-time", "3600"]).current_dir(directory);
+        command.args(arguments).current_dir(directory);
         let mut program = started(command.stdin(Stdio::null()).stdout(Stdio::piped()));
-        let mut line = String::new();
-        BufReader::new(program.stdout.take().unwrap()).read_line(&mut line).unwrap();
+        let line = first_line(&mut program);
         let (_, rest) = line.split_once("http://127.0.0.1:").expect("an address");
         let (port, token) = rest.trim().trim_end_matches('/').split_once('/').expect("a token");
         Live { _program: program, port: port.to_owned(), token: token.to_owned() }

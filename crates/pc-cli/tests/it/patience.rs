@@ -1,5 +1,6 @@
 //! Waiting with an end: for programs, and for what they are to do.
 
+use std::io::{BufRead, BufReader};
 use std::ops::{Deref, DerefMut};
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -58,6 +59,15 @@ pub(crate) fn send(signal: &str, to: &str) {
 
 pub(crate) fn started(command: &mut Command) -> Reaped {
     Reaped(Some(command.spawn().expect("the program starts")))
+}
+
+/// The first line that a program prints, which runs on: a server prints its address.
+#[track_caller]
+pub(crate) fn first_line(program: &mut Reaped) -> String {
+    let mut line = String::new();
+    let printed = program.stdout.take().expect("a pipe");
+    BufReader::new(printed).read_line(&mut line).expect("a line");
+    line
 }
 
 /// How a process ends, and what comes through its pipes; one that hangs is killed.
