@@ -17,6 +17,7 @@ mod block;
 pub(crate) mod bodies;
 pub(crate) mod body_reactions;
 pub(crate) mod brackets;
+mod carrier;
 pub(crate) mod constraint_treatment;
 pub(crate) mod constraints;
 pub(crate) mod definite;

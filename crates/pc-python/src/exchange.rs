@@ -2,10 +2,10 @@
 
 use std::io::Cursor;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use pc_fmu::{FmiVersion, Fmu, FmuOptions, FmuSolver};
-use pc_model::import::{ImportOptions, model_of_robot};
+use pc_model::import::{Directories, ImportOptions, model_of_robot};
 use pc_model::{Source, deep};
 use pc_run::files::error::FileError;
 use pc_run::files::target::Target;
@@ -24,8 +24,10 @@ pub(crate) fn text_of_urdf(
     floating: bool,
     fix_massless: bool,
 ) -> Result<(String, Vec<String>), Error> {
-    let options = ImportOptions { floating, fix_massless, ..ImportOptions::default() };
-    Ok(model_of_robot(&Source::new(name, urdf), options)?)
+    let path = Path::new(&name);
+    let directories = Some(Directories::of_files(path, path));
+    let options = ImportOptions { floating, fix_massless, directories, ..ImportOptions::default() };
+    Ok(model_of_robot(&Source::new(name.as_str(), urdf), options)?)
 }
 
 /// How an FMU integrates on its own, given by the name of the method and, for fixed steps, their length.

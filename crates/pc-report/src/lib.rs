@@ -29,6 +29,7 @@ mod check;
 mod error;
 #[cfg(feature = "files")]
 pub mod files;
+mod mesh;
 mod page;
 pub mod picture;
 mod recording;
@@ -39,6 +40,7 @@ mod still;
 pub use check::check::Check;
 pub use check::findings::Finding;
 pub use error::ReportError;
+pub use mesh::Mesh;
 pub use page::pieces;
 pub use page::player::animation;
 pub use page::report::{Page, report};

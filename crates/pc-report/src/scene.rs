@@ -1,15 +1,22 @@
 //! Shapes with their positions along a motion.
 
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
 use pc_expr::{Backend, Evaluator, Inputs, Program};
 use pc_mech::{Expr, Graph, MechError};
 use pc_model::{Arrow, Assembly, ConstraintFormulation, Model, ModelError, Quantity, Shape};
 use serde_json::{Value, json};
 
 use crate::base64::numbers;
+use crate::mesh::Mesh;
 use crate::recording::{ColumnKind, Recording};
 
 /// The largest number of values in all stills together, which take up a third of a megabyte.
 const MOST_NUMBERS: usize = 60_000;
+
+/// The largest number of triangles in all surfaces together, on a page and in a still.
+const MOST_FACES: [usize; 2] = [12_000, 3_000];
 
 /// A shape, whose numbers are stored in the stills, shape by shape.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -28,6 +35,8 @@ pub enum SceneShape {
     Box,
     /// The common point of the axes, and the rows of a rotation matrix.
     Axes,
+    /// The place of the origin of a surface with this index, and the rows of a rotation matrix.
+    Mesh(usize),
     /// The two ends.
     Spring,
     /// Three numbers: the point that leaves a trace.
@@ -45,14 +54,15 @@ impl SceneShape {
             SceneShape::Disc | SceneShape::Ring => 7,
             SceneShape::Sphere => 4,
             SceneShape::Box => 15,
-            SceneShape::Axes => 12,
+            SceneShape::Axes | SceneShape::Mesh(_) => 12,
             SceneShape::Spring => 6,
         }
     }
 
     /// The name of the shape in the script, and its text.
-    fn word(&self) -> (&'static str, &str) {
-        match self {
+    fn word(&self) -> (&'static str, Cow<'_, str>) {
+        let (kind, text) = match self {
+            SceneShape::Mesh(index) => return ("mesh", index.to_string().into()),
             SceneShape::Point(label) => ("point", label.as_deref().unwrap_or_default()),
             SceneShape::Line(_) => ("line", ""),
             SceneShape::Disc => ("disc", ""),
@@ -62,14 +72,15 @@ impl SceneShape {
             SceneShape::Axes => ("axes", ""),
             SceneShape::Spring => ("spring", ""),
             SceneShape::Trace => ("trace", ""),
-            SceneShape::Text(text) => ("text", text),
-        }
+            SceneShape::Text(text) => ("text", text.as_str()),
+        };
+        (kind, text.into())
     }
-}
 
-impl From<Shape<'_>> for SceneShape {
-    fn from(shape: Shape<'_>) -> SceneShape {
+    /// The shape of a drawing; `mesh` has the index of each surface.
+    fn of(shape: Shape<'_>, mesh: impl FnOnce(PathBuf, [f64; 3]) -> usize) -> SceneShape {
         match shape {
+            Shape::Mesh { file, scale, .. } => SceneShape::Mesh(mesh(file, scale)),
             Shape::Point { label, .. } => SceneShape::Point(label),
             Shape::Line { through } => SceneShape::Line(through.len()),
             Shape::Disc { .. } => SceneShape::Disc,
@@ -132,6 +143,49 @@ pub struct Scene {
     pub gravity: [f64; 3],
     /// The direction that the text says is up.
     pub up: Option<[f64; 3]>,
+    /// The surfaces of triangles, as a page has them and as a still has them.
+    pub meshes: Vec<[Mesh; 2]>,
+}
+
+/// The surfaces of files, each once.
+#[derive(Default)]
+struct Surfaces {
+    files: Vec<(PathBuf, [f64; 3])>,
+    meshes: Vec<Mesh>,
+}
+
+impl Surfaces {
+    /// Those of a drawing.
+    ///
+    /// # Errors
+    /// [`ModelError`] at the entry of the text whose file is not there, or has none.
+    fn of(model: &Model, drawing: &[Shape<'_>]) -> Result<Surfaces, ModelError> {
+        let mut surfaces = Surfaces::default();
+        for shape in drawing {
+            let Shape::Mesh { file, scale, .. } = shape else { continue };
+            if surfaces.index(file, *scale).is_none() {
+                let mesh =
+                    Mesh::read(file, *scale).map_err(|error| model.not_drawn(file, error.to_string()))?;
+                surfaces.files.push((file.clone(), *scale));
+                surfaces.meshes.push(mesh);
+            }
+        }
+        Ok(surfaces)
+    }
+
+    fn index(&self, file: &Path, scale: [f64; 3]) -> Option<usize> {
+        self.files.iter().position(|(known, of)| known == file && *of == scale)
+    }
+
+    /// The surfaces with as many triangles as there is room for, each with its part of them.
+    fn simplified(&self) -> Vec<[Mesh; 2]> {
+        let all: usize = self.meshes.iter().map(|mesh| mesh.faces.len()).sum();
+        let part = |mesh: &Mesh, most: usize| match all <= most {
+            true => mesh.clone(),
+            false => mesh.simplified((most as f64 * mesh.faces.len() as f64 / all as f64).ceil() as usize),
+        };
+        self.meshes.iter().map(|mesh| MOST_FACES.map(|most| part(mesh, most))).collect()
+    }
 }
 
 /// What is known of a motion: the symbols of its state and of its outputs, with their columns.
@@ -234,6 +288,7 @@ impl Scene {
         if drawing.is_empty() || record.rows.times.is_empty() {
             return Ok(None);
         }
+        let surfaces = Surfaces::of(model, &drawing)?;
         let known = Known::of(assembly, record);
         let functions: Vec<Expr<'_>> = drawing.iter().flat_map(Shape::functions).collect();
         let mut functions = known.by_columns(&functions);
@@ -269,7 +324,14 @@ impl Scene {
         at.extend(system.parameters());
         let gravity = graph.evaluate(&system.gravity(), &at).unwrap_or_else(|_| vec![0.0; 3]);
         Ok(Some(Scene {
-            shapes: drawing.into_iter().map(SceneShape::from).collect(),
+            shapes: drawing
+                .into_iter()
+                .map(|shape| {
+                    let index = |file: PathBuf, scale| surfaces.index(&file, scale).unwrap_or_default();
+                    SceneShape::of(shape, index)
+                })
+                .collect(),
+            meshes: surfaces.simplified(),
             arrows,
             times: shown.iter().map(|&i| record.rows.times[i]).collect(),
             stills,
@@ -303,10 +365,16 @@ impl Scene {
         let arrows = self.arrows.iter();
         let arrows: Vec<Value> =
             arrows.map(|arrow| json!([arrow.word(), arrow.of, arrow.at, arrow.vector])).collect();
+        let meshes = self.meshes.iter().map(|[mesh, _]| {
+            let faces: Vec<f32> = mesh.faces.iter().flatten().map(|&corner| corner as f32).collect();
+            json!({ "corners": numbers(&mesh.corners.concat()), "faces": numbers(&faces) })
+        });
+        let meshes: Vec<Value> = meshes.collect();
         let single: Vec<f32> = self.times.iter().map(|&t| t as f32).collect();
         json!({
             "shapes": shapes,
             "arrows": arrows,
+            "meshes": meshes,
             "width": self.width(),
             "gravity": self.gravity,
             "up": self.up,

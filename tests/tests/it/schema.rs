@@ -107,9 +107,10 @@ const OBJECTS: &[(&str, &str)] = &[
     ("/definitions/shape/oneOf/3", "[[draw]]\nkind = \"ring\"\nWRONG = 1"),
     ("/definitions/shape/oneOf/4", "[[draw]]\nkind = \"sphere\"\nWRONG = 1"),
     ("/definitions/shape/oneOf/5", "[[draw]]\nkind = \"box\"\nWRONG = 1"),
-    ("/definitions/shape/oneOf/6", "[[draw]]\nkind = \"spring\"\nWRONG = 1"),
-    ("/definitions/shape/oneOf/7", "[[draw]]\nkind = \"trace\"\nWRONG = 1"),
-    ("/definitions/shape/oneOf/8", "[[draw]]\nkind = \"text\"\nWRONG = 1"),
+    ("/definitions/shape/oneOf/6", "[[draw]]\nkind = \"mesh\"\nWRONG = 1"),
+    ("/definitions/shape/oneOf/7", "[[draw]]\nkind = \"spring\"\nWRONG = 1"),
+    ("/definitions/shape/oneOf/8", "[[draw]]\nkind = \"trace\"\nWRONG = 1"),
+    ("/definitions/shape/oneOf/9", "[[draw]]\nkind = \"text\"\nWRONG = 1"),
     ("/definitions/event", "[events.a]\nWRONG = 1"),
 ];
 

@@ -1,10 +1,11 @@
 //! Models, given as a text or built call by call.
 
 use std::ffi::{CString, c_char, c_int};
+use std::path::Path;
 use std::sync::OnceLock;
 
 use ::pc_model::document::read_file_bounded;
-use ::pc_model::import::{ImportOptions, model_of_robot};
+use ::pc_model::import::{Directories, ImportOptions, model_of_robot};
 use ::pc_model::{Builtin, Document, Model, Source};
 
 use crate::ffi::boundary::entry;
@@ -163,6 +164,7 @@ pub unsafe extern "C" fn pc_model_from_robot(
         let options = ImportOptions {
             floating: floating != 0,
             fix_massless: fix_massless != 0,
+            directories: Some(Directories::of_files(Path::new(path), Path::new(path))),
             ..ImportOptions::default()
         };
         let (text, _) = model_of_robot(&Source::from_bytes(path, &bytes), options)?;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use pc_model::Source;
 use pc_model::document::{read_bounded, read_file_bounded};
-use pc_model::import::{ImportOptions, model_of_robot};
+use pc_model::import::{Directories, ImportOptions, model_of_robot};
 use pc_run::files::apart::{STANDARD_INPUT, keep_apart};
 use pc_run::files::error::FileError;
 use pc_run::files::target::{Target, file};
@@ -40,6 +40,9 @@ pub fn command(arguments: &ImportArguments) -> Result<(), CliError> {
         floating: arguments.floating,
         fix_massless: arguments.fix_massless,
         restitution: arguments.limits,
+        // The model on standard output is for the directory in which the program runs.
+        directories: path
+            .map(|robot| Directories::of_files(robot, place.as_ref().map_or(Path::new(""), Target::path))),
     };
     let (text, left_out) = model_of_robot(&source, options)?;
     left_out.iter().for_each(|left| say(format_args!("note: {left}\n")));

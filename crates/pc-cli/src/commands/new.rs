@@ -34,7 +34,8 @@ pub fn command(arguments: &NewArguments) -> Result<(), CliError> {
         .create(|out| out.write_all(text.as_bytes()))
         .map_err(|source| FileError::cannot_write(path, source))?;
     let name = path.display();
-    say(format_args!("{name}: now `pc check {name}`, `pc derive {name}`, `pc run {name}`\n"));
+    let next = ["check", "derive", "run", "live"].map(|command| format!("`pc {command} {name}`")).join(", ");
+    say(format_args!("{name}: now {next}\n"));
     Ok(())
 }
 

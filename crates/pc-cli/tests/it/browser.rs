@@ -65,16 +65,22 @@ impl Drop for Browser {
     }
 }
 
-/// Runs headless Chromium on a page, in a separate directory.
-fn browse(chromium: &Path, directory: &Path, more: &[&str], page: &Path) -> Output {
-    let mut command = Command::new(chromium);
+/// The options of a Chromium without a window, whose profile is in a directory.
+pub(crate) fn headless<'c>(command: &'c mut Command, directory: &Path) -> &'c mut Command {
     command
         .args(["--headless", "--no-sandbox", "--disable-quic", "--no-first-run"])
         // WebGL without a graphics card.
         .args(["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"])
         .args(["--disable-background-networking", "--disable-component-update", "--disable-sync"])
-        .args(["--disable-dev-shm-usage", "--hide-scrollbars", "--host-resolver-rules=MAP * ~NOTFOUND"])
+        .args(["--disable-dev-shm-usage", "--hide-scrollbars"])
         .arg(format!("--user-data-dir={}", directory.join("profile").display()))
+}
+
+/// Runs headless Chromium on a page, in a separate directory.
+fn browse(chromium: &Path, directory: &Path, more: &[&str], page: &Path) -> Output {
+    let mut command = Command::new(chromium);
+    headless(&mut command, directory)
+        .arg("--host-resolver-rules=MAP * ~NOTFOUND")
         .args(more)
         .arg(format!("file://{}", page.display()))
         .stdin(Stdio::null());

@@ -9,6 +9,7 @@ use std::thread;
 
 use serde_json::{Value, json};
 
+use crate::browser::headless;
 use crate::patience::{PATIENCE, Reaped, send, started};
 
 /// A tab of a browser that lives as long as the tab.
@@ -31,12 +32,8 @@ impl Tab {
         let mut command = Command::new("sh");
         command.args(["-c", "exec \"$0\" \"$@\" 3<\"$ORDERS\" 4>\"$MESSAGES\""]).arg(chromium);
         command.env("ORDERS", &pipes[0]).env("MESSAGES", &pipes[1]);
-        command
-            .args(["--headless", "--no-sandbox", "--no-first-run", "--remote-debugging-pipe"])
-            .args(["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"])
-            .args(["--disable-background-networking", "--disable-component-update", "--disable-sync"])
-            .args(["--disable-dev-shm-usage", "--hide-scrollbars", "--window-size=1280,900"])
-            .arg(format!("--user-data-dir={}", directory.join("profile").display()))
+        headless(&mut command, directory)
+            .args(["--remote-debugging-pipe", "--window-size=1280,900"])
             .stdin(Stdio::null())
             .stdout(Stdio::null())
             .stderr(Stdio::null());

@@ -2,6 +2,7 @@
 //! their place.
 
 mod exported;
+mod meshes;
 mod mjcf;
 mod motion;
 mod quirks;

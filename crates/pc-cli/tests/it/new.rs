@@ -32,7 +32,8 @@ fn each_text_is_checked_derived_and_run() {
         let file = format!("{name}.toml");
         let made = pc(here, &["new", &name, "-o", &file]);
         assert!(made.status.success() && made.stdout.is_empty(), "{}", said(&made));
-        let expected = format!("{file}: now `pc check {file}`, `pc derive {file}`, `pc run {file}`\n");
+        let expected =
+            format!("{file}: now `pc check {file}`, `pc derive {file}`, `pc run {file}`, `pc live {file}`\n");
         assert_eq!(said(&made), expected);
         assert_eq!(fs::read_to_string(here.join(&file)).expect("a file"), kind.text());
         for output in [pc(here, &["new", &name]), pc(here, &["new", &name, "-o", "-"])] {

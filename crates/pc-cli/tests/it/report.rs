@@ -153,13 +153,13 @@ fn frames_are_the_numbers_of_the_run() {
     }
 }
 
-/// The centres of the filled circles of a picture, in order.
+/// The centres of the dots of a picture, in order: each is the largest of the circles of which it is made, and wider than a rod.
 fn dots(svg: &str) -> Vec<[f64; 2]> {
     let xml = parsed(svg);
     let filled = xml.descendants().filter(|node| {
         node.has_tag_name("path") && node.attribute("fill").is_some_and(|fill| fill != "none")
     });
-    let middle = |node: roxmltree::Node<'_, '_>| {
+    let circle = |node: roxmltree::Node<'_, '_>| {
         let path = node.attribute("d").expect("a path").trim_start_matches('M').trim_end_matches('Z');
         let corners: Vec<[f64; 2]> = path
             .split('L')
@@ -169,9 +169,11 @@ fn dots(svg: &str) -> Vec<[f64; 2]> {
             })
             .collect();
         let mean = |k: usize| corners.iter().map(|corner| corner[k]).sum::<f64>() / corners.len() as f64;
-        [mean(0), mean(1)]
+        let middle = [mean(0), mean(1)];
+        let radius = (corners[0][0] - middle[0]).hypot(corners[0][1] - middle[1]);
+        (corners.len() > 4 && radius > 5.4).then_some(middle)
     };
-    filled.map(middle).collect()
+    filled.filter_map(circle).collect()
 }
 
 /// Lengths in a frame are those of the run times one common factor.

@@ -23,8 +23,6 @@ pub(super) struct Outlines<'a, 'd, 'g> {
     assembly: &'a Assembly<'g>,
     scope: Scope<'g, 'd>,
     points: Vec<Dot<'d, 'g>>,
-    /// Whether bodies are boxes: where the text draws nothing.
-    has_boxes: bool,
 }
 
 impl<'a, 'd, 'g> Outlines<'a, 'd, 'g> {
@@ -38,7 +36,12 @@ impl<'a, 'd, 'g> Outlines<'a, 'd, 'g> {
             }
             points.push(Dot { body: &point.body.value, at });
         }
-        Ok(Outlines { document, assembly, scope, points, has_boxes: document.draw.is_empty() })
+        Ok(Outlines { document, assembly, scope, points })
+    }
+
+    /// Whether a body may be a box: where the text draws nothing of it, and nothing along the fixed axes, which may be of any body.
+    fn has_box(&self, name: &str) -> bool {
+        self.document.draw.iter().all(|draw| draw.body.as_ref().is_some_and(|body| body.value != name))
     }
 
     /// Bodies on joints, other bodies, and points.
@@ -58,7 +61,8 @@ impl<'a, 'd, 'g> Outlines<'a, 'd, 'g> {
         let mut shapes = vec![Shape::Point { at, label: Some(body.name.text.clone()) }];
         if let Some(Orientation::Rotation(entries)) = &body.orientation {
             let rotation = rotation(&mut self.scope, entries, Stage::Position)?;
-            let block = if self.has_boxes { self.own_block(body, at, &rotation)? } else { None };
+            let block =
+                if self.has_box(&body.name.text) { self.own_block(body, at, &rotation)? } else { None };
             shapes.push(block.unwrap_or(Shape::Axes { at, rotation }));
         }
         Ok(shapes)
@@ -92,7 +96,7 @@ impl<'a, 'd, 'g> Outlines<'a, 'd, 'g> {
         }
         let ends = if ends.is_empty() { vec![centre] } else { ends };
         let rods: Vec<Spot<'g>> = ends.into_iter().filter(|end| *end != place).collect();
-        let is_box = self.has_boxes && (rods.is_empty() || self.is_free(body.name()));
+        let is_box = self.has_box(body.name()) && (rods.is_empty() || self.is_free(body.name()));
         let block = is_box.then(|| self.block((mass, &inertia), centre, &rotation)).flatten();
         let mut shapes = match block {
             Some(block) => vec![block],

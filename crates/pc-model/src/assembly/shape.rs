@@ -1,5 +1,7 @@
 //! The shapes of a drawing.
 
+use std::path::PathBuf;
+
 use pc_mech::{Expr, Graph, Matrix};
 
 /// The coordinates of a point in space, as functions of (t, x, η).
@@ -61,6 +63,17 @@ pub enum Shape<'g> {
         /// The rotation matrix from its axes to the fixed axes.
         rotation: Matrix<Expr<'g>>,
     },
+    /// A surface of triangles, from a file.
+    Mesh {
+        /// The path of the file.
+        file: PathBuf,
+        /// The factors of the lengths along the file's axes.
+        scale: [f64; 3],
+        /// The place of the origin of the file's axes.
+        at: Spot<'g>,
+        /// The rotation matrix from the file's axes to the fixed axes.
+        rotation: Matrix<Expr<'g>>,
+    },
     /// A spring.
     Spring {
         /// One end.
@@ -93,7 +106,9 @@ impl<'g> Shape<'g> {
             }
             Shape::Sphere { at, radius } => [at.as_slice(), &[*radius]].concat(),
             Shape::Box { at, size, rotation } => [at.as_slice(), size, &entries(rotation)].concat(),
-            Shape::Axes { at, rotation } => [at.as_slice(), &entries(rotation)].concat(),
+            Shape::Axes { at, rotation } | Shape::Mesh { at, rotation, .. } => {
+                [at.as_slice(), &entries(rotation)].concat()
+            }
             Shape::Spring { from, to } => [*from, *to].concat(),
         }
     }
@@ -115,6 +130,7 @@ impl<'g> Shape<'g> {
             Shape::Sphere { .. } => Shape::Sphere { at: at(0), radius: values[3] },
             Shape::Box { .. } => Shape::Box { at: at(0), size: at(3), rotation: turned(6) },
             Shape::Axes { .. } => Shape::Axes { at: at(0), rotation: turned(3) },
+            Shape::Mesh { file, scale, .. } => Shape::Mesh { file, scale, at: at(0), rotation: turned(3) },
             Shape::Spring { .. } => Shape::Spring { from: at(0), to: at(3) },
         }
     }

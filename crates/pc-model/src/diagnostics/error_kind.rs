@@ -155,6 +155,20 @@ pub enum ErrorKind {
         /// The existing bodies and points.
         known: Vec<String>,
     },
+    /// A mesh whose file is not there, or is none.
+    #[error("`{file}` cannot be drawn: {why}")]
+    NotDrawn {
+        /// The file as the text names it.
+        file: String,
+        /// Why.
+        why: String,
+    },
+    /// A body whose angular velocity is all that is known of its attitude, and in whose axes something would be drawn.
+    #[error("the axes of `{body}` are not known: its `angular_velocity` is given, not its attitude")]
+    NoAxes {
+        /// The body.
+        body: String,
+    },
     /// A body without attitude that would roll or slide.
     #[error("the body `{body}` is a particle, without a shape that could touch anything")]
     Pointlike {
@@ -454,6 +468,10 @@ impl ErrorKind {
             Self::NothingToHide { name, known } => {
                 suggest(name, known, &format!("the bodies and points are {}", listed(known)))
             }
+            Self::NotDrawn { .. } => {
+                "a mesh is a file in STL or OBJ; paths are relative to the model's file".into()
+            }
+            Self::NoAxes { .. } => "leave `body` out, and describe the shape along the fixed axes".into(),
             Self::Pointlike { .. } => {
                 "give it `inertia` and `rotation` or `angular_velocity`, or attach it by a `joint`".into()
             }

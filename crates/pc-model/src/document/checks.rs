@@ -7,8 +7,8 @@ use std::collections::hash_map::Entry;
 use crate::diagnostics::error::ModelError;
 use crate::diagnostics::error_kind::{ErrorKind, Role};
 use crate::diagnostics::meaning::MeaningError;
-use crate::document::contents::Document;
-use crate::document::expression::{Name, NamedExpression};
+use crate::document::contents::{Body, Document, Orientation};
+use crate::document::expression::{Located, Name, NamedExpression};
 
 /// Checks that the energy is given by `[lagrangian]` or `[bodies]`.
 pub(super) fn require_energy(document: &Document) -> Result<(), ModelError> {
@@ -125,6 +125,23 @@ pub(super) fn check_hidden(document: &Document) -> Result<(), ModelError> {
             Err(document.source.error(&stray.place, kind))
         }
     }
+}
+
+/// A body in whose axes something is drawn has to be there.
+pub(super) fn check_carriers(document: &Document) -> Result<(), ModelError> {
+    let bodies = document.bodies.iter().map(|body| &body.name);
+    let known: Vec<String> =
+        bodies.chain(document.tree.iter().map(|body| &body.name)).map(|name| name.text.clone()).collect();
+    let is_turned = |body: &Body| matches!(body.orientation, Some(Orientation::AngularVelocity(_)));
+    for Located { value: name, place } in document.draw.iter().filter_map(|draw| draw.body.as_ref()) {
+        if !known.contains(name) {
+            return Err(document.source.error(place, ErrorKind::NoSuchBody { name: name.clone(), known }));
+        }
+        if document.bodies.iter().any(|body| body.name.text == *name && is_turned(body)) {
+            return Err(document.source.error(place, ErrorKind::NoAxes { body: name.clone() }));
+        }
+    }
+    Ok(())
 }
 
 /// Checks that a name has only one meaning.

@@ -13,6 +13,8 @@ pub struct Draw {
     pub place: Place,
     /// The shape drawn.
     pub shape: DrawnShape,
+    /// The body in whose axes the shape is described, from the body's origin; the fixed axes if left out.
+    pub body: Option<Located<String>>,
 }
 
 /// A position, given by two or three expressions.
@@ -65,6 +67,17 @@ pub enum DrawnShape {
         /// The rows of the rotation matrix R from the box's axes to the fixed axes.
         rotation: Option<Box<[Expression; 9]>>,
     },
+    /// A surface of triangles, from a file.
+    Mesh {
+        /// The file, in STL or OBJ.
+        file: Located<String>,
+        /// The place of the origin of the file's axes; the origin if left out.
+        at: Option<DrawnPlace>,
+        /// The rows of the rotation matrix R from the file's axes to those of the body, or to the fixed axes.
+        rotation: Option<Box<[Expression; 9]>>,
+        /// The factors of the lengths along the file's axes.
+        scale: [f64; 3],
+    },
     /// A spring.
     Spring {
         /// One end.
@@ -87,15 +100,16 @@ pub enum DrawnShape {
 }
 
 const KINDS: &[(&str, Keys)] = &[
-    ("point", Keys(&["kind", "at"])),
-    ("line", Keys(&["kind", "through"])),
-    ("disc", Keys(&["kind", "at", "normal", "radius"])),
-    ("ring", Keys(&["kind", "at", "normal", "radius"])),
-    ("sphere", Keys(&["kind", "at", "radius"])),
-    ("box", Keys(&["kind", "at", "size", "rotation"])),
-    ("spring", Keys(&["kind", "from", "to"])),
-    ("trace", Keys(&["kind", "at"])),
-    ("text", Keys(&["kind", "at", "text"])),
+    ("point", Keys(&["kind", "body", "at"])),
+    ("line", Keys(&["kind", "body", "through"])),
+    ("disc", Keys(&["kind", "body", "at", "normal", "radius"])),
+    ("ring", Keys(&["kind", "body", "at", "normal", "radius"])),
+    ("sphere", Keys(&["kind", "body", "at", "radius"])),
+    ("box", Keys(&["kind", "body", "at", "size", "rotation"])),
+    ("mesh", Keys(&["kind", "body", "file", "at", "rotation", "scale"])),
+    ("spring", Keys(&["kind", "body", "from", "to"])),
+    ("trace", Keys(&["kind", "body", "at"])),
+    ("text", Keys(&["kind", "body", "at", "text"])),
 ];
 
 /// The entries allowed for a kind of shape.
@@ -122,6 +136,12 @@ fn entry(item: &Item<'_>) -> Result<Draw, ModelError> {
         return Err(foreign.unknown(allowed));
     }
     let at = || place(&wanted("at", AT)?);
+    let rotation = || {
+        let rows = part("rotation")
+            .map(|part| part.array("9 expressions", "rotation = [1, 0, 0, 0, 1, 0, 0, 0, 1]"))
+            .transpose();
+        rows.map(|rows| rows.map(Box::new))
+    };
     let shape = match kind.text()?.value.as_str() {
         "line" => {
             let through = wanted("through", THROUGH)?;
@@ -142,10 +162,13 @@ fn entry(item: &Item<'_>) -> Result<Draw, ModelError> {
         "box" => DrawnShape::Box {
             at: at()?,
             size: place(&wanted("size", "size = [1.0, 0.5, 0.2]")?)?,
-            rotation: part("rotation")
-                .map(|part| part.array("9 expressions", "rotation = [1, 0, 0, 0, 1, 0, 0, 0, 1]"))
-                .transpose()?
-                .map(Box::new),
+            rotation: rotation()?,
+        },
+        "mesh" => DrawnShape::Mesh {
+            file: wanted("file", "file = \"arm.stl\"")?.text()?,
+            at: part("at").as_ref().map(place).transpose()?,
+            rotation: rotation()?,
+            scale: part("scale").as_ref().map_or(Ok([1.0; 3]), scale)?,
         },
         "spring" => DrawnShape::Spring {
             from: place(&wanted("from", "from = [0, 0, 0]")?)?,
@@ -155,7 +178,24 @@ fn entry(item: &Item<'_>) -> Result<Draw, ModelError> {
         "text" => DrawnShape::Text { at: at()?, text: wanted("text", "text = \"…\"")?.text()? },
         _ => DrawnShape::Point { at: at()? },
     };
-    Ok(Draw { place: table.place.clone(), shape })
+    let body = part("body").map(|part| part.text()).transpose()?;
+    Ok(Draw { place: table.place.clone(), shape, body })
+}
+
+/// The factor of all lengths, or one for each axis.
+fn scale(item: &Item<'_>) -> Result<[f64; 3], ModelError> {
+    let (expected, example) = ("a number or 3 numbers", "scale = 0.001");
+    let given =
+        if item.is_number() { vec![item.number()?.value; 3] } else { item.numbers(expected, example)? };
+    let wrong = |kind| Err(item.error(kind));
+    match <[f64; 3]>::try_from(given) {
+        Ok(scale) if !scale.contains(&0.0) => Ok(scale),
+        Ok(_) => {
+            let expected = "factors other than 0";
+            wrong(ErrorKind::OutOfRange { expected, found: item.raw().to_owned(), example })
+        }
+        Err(given) => wrong(ErrorKind::WrongLength { expected, found: given.len(), example }),
+    }
 }
 
 /// The numbers of corners that a polyline may have.

@@ -49,6 +49,7 @@ impl Document {
         checks::check_tolerances(&document)?;
         units::check_units(&document)?;
         checks::check_hidden(&document)?;
+        checks::check_carriers(&document)?;
         Ok(document)
     }
 

@@ -274,6 +274,10 @@ impl<'a> Item<'a> {
         matches!(self.value, DeValue::Boolean(_))
     }
 
+    pub(super) fn is_number(&self) -> bool {
+        matches!(self.value, DeValue::Integer(_) | DeValue::Float(_))
+    }
+
     pub(super) fn boolean(&self) -> Result<Located<bool>, ModelError> {
         match self.value {
             DeValue::Boolean(value) => Ok(self.located(*value)),

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+pub(crate) use crate::import::meshes::Visual;
 pub(crate) use crate::import::pose::Pose;
 
 /// A robot: links, and joints between them.
@@ -58,6 +59,8 @@ pub(crate) struct Link {
     pub(crate) inertial: Option<Inertial>,
     /// The files of the link's meshes.
     pub(crate) meshes: Vec<String>,
+    /// The meshes with which it is drawn.
+    pub(crate) visuals: Vec<Visual>,
     /// Whether it stands for the fixed axes.
     pub(crate) is_world: bool,
 }
@@ -65,7 +68,14 @@ pub(crate) struct Link {
 impl Link {
     /// A link without mass.
     pub(crate) fn empty(name: &str, span: Range<usize>) -> Link {
-        Link { name: name.to_owned(), span, inertial: None, meshes: Vec::new(), is_world: false }
+        Link {
+            name: name.to_owned(),
+            span,
+            inertial: None,
+            meshes: Vec::new(),
+            visuals: Vec::new(),
+            is_world: false,
+        }
     }
 
     /// The fixed axes.

@@ -9,30 +9,38 @@ use crate::import::additions::list;
 use crate::import::error::UrdfError;
 use crate::import::inertia::{along_axes_of_the_link, impossible};
 use crate::import::massless;
+use crate::import::meshes::{Directories, Visual};
 use crate::import::names::Names;
+use crate::import::pose::tidy;
 use crate::import::robot::{Inertial, Joint, Kind, Link, Pose, Robot};
 use crate::import::xml::parse;
 use crate::import::{additions, mjcf, sdf, urdf};
 
 /// How a robot becomes a model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ImportOptions {
+pub struct ImportOptions<'a> {
     /// Whether the root link moves freely; otherwise it is fixed.
     pub floating: bool,
     /// Whether joints that move no mass are fixed; otherwise they are refused.
     pub fix_massless: bool,
     /// The coefficient of restitution of rigid stops at the limits of joints; without it limits become comments.
     pub restitution: Option<f64>,
+    /// Where the files of meshes are looked for; without it meshes become comments.
+    pub directories: Option<Directories<'a>>,
 }
 
 /// The text of the model of a robot in URDF, and notes on what was left out and changed.
 ///
 /// Bodies have the names of links, and coordinates those of joints, changed if they are not valid names.
-/// Meshes become comments, and so do limits unless they are to be rigid stops.
+/// The meshes of URDF are drawn if their files are there; other meshes become comments, and so do limits unless they are to be
+/// rigid stops.
 ///
 /// # Errors
 /// [`UrdfError`], which gives the file, line and column.
-pub fn model_of_robot(source: &Source, options: ImportOptions) -> Result<(String, Vec<String>), UrdfError> {
+pub fn model_of_robot(
+    source: &Source,
+    options: ImportOptions<'_>,
+) -> Result<(String, Vec<String>), UrdfError> {
     let document = parse(source)?;
     let mut robot = match document.root_element().tag_name().name() {
         "mujoco" => mjcf::read(source, &document)?,
@@ -51,7 +59,7 @@ pub fn model_of_robot(source: &Source, options: ImportOptions) -> Result<(String
     massless::check(source, &robot, &tree.order)?;
     let starts = tree.starts()?;
     let stops = Stops::of(&robot, options.restitution, &starts);
-    Ok((tree.text(options.floating, &starts, &stops), tree.left_out(&stops)))
+    Ok((tree.text(options, &starts, &stops), tree.left_out(&stops)))
 }
 
 /// [`model_of_robot`] with the root link free if `floats` is set, and without joints that move no mass.
@@ -249,7 +257,7 @@ impl<'a> Tree<'a> {
             .collect()
     }
 
-    fn text(&self, floats: bool, starts: &[(&Joint, f64)], stops: &Stops<'_>) -> String {
+    fn text(&self, options: ImportOptions<'_>, starts: &[(&Joint, f64)], stops: &Stops<'_>) -> String {
         let mut text = String::new();
         let mut line = |line: String| {
             text += &line;
@@ -285,12 +293,15 @@ impl<'a> Tree<'a> {
             }
         }
         for (link, joint) in self.order.iter().filter(|(link, _)| !link.is_world) {
-            line(self.body(link, *joint, floats, stops));
+            line(self.body(link, *joint, options, stops));
         }
         additions::loops(self.robot, &self.names).into_iter().for_each(&mut line);
         text += &section("constraints", additions::constraints(self.robot, &self.names));
         text += &section("lagrangian", additions::lagrangian(self.robot, &self.names));
         text += &section("forces", additions::forces(self.robot, &self.names));
+        for (link, visual, path) in self.seen(options) {
+            text += &self.drawn(link, visual, &path);
+        }
         text
     }
 
@@ -308,8 +319,40 @@ impl<'a> Tree<'a> {
         }
     }
 
+    /// The meshes whose files are there, each with its link and the path of its file.
+    fn seen(&self, options: ImportOptions<'a>) -> impl Iterator<Item = (&'a Link, &'a Visual, String)> {
+        let links = self.order.iter().map(|&(link, _)| link);
+        let visuals = links.flat_map(|link| link.visuals.iter().map(move |visual| (link, visual)));
+        visuals
+            .filter_map(move |(link, visual)| Some((link, visual, options.directories?.path(&visual.file)?)))
+    }
+
+    /// The entry of a mesh.
+    fn drawn(&self, link: &Link, visual: &Visual, path: &str) -> String {
+        let Visual { origin, scale, .. } = visual;
+        let mut lines = vec!["\n[[draw]]".to_owned(), "kind = \"mesh\"".to_owned()];
+        lines.push(format!("body = {}", quoted(self.names.body(&link.name))));
+        lines.push(format!("file = {}", quoted(path)));
+        if origin.xyz != [0.0; 3] {
+            lines.push(format!("at = {}", list(&origin.xyz)));
+        }
+        if origin.rpy != [0.0; 3] {
+            lines.push(format!("rotation = {}", list(&origin.rotation().map(tidy).concat())));
+        }
+        if *scale != [1.0; 3] {
+            lines.push(format!("scale = {}", list(scale)));
+        }
+        lines.join("\n") + "\n"
+    }
+
     /// The section of a body.
-    fn body(&self, link: &Link, joint: Option<&Joint>, floats: bool, stops: &Stops<'_>) -> String {
+    fn body(
+        &self,
+        link: &Link,
+        joint: Option<&Joint>,
+        options: ImportOptions<'_>,
+        stops: &Stops<'_>,
+    ) -> String {
         let mut text = format!("\n[bodies.{}]", self.names.body(&link.name));
         let mut line = |line: String| {
             text.push('\n');
@@ -318,9 +361,17 @@ impl<'a> Tree<'a> {
         if link.name != self.names.body(&link.name) {
             line(format!("# the link {}", one_line(&link.name)));
         }
-        link.meshes.iter().for_each(|mesh| line(format!("# mesh: {}", one_line(mesh))));
+        let is_seen = |mesh: &str| {
+            let mut visuals = link.visuals.iter().filter(|visual| visual.file == mesh);
+            options.directories.is_some_and(|at| at.path(mesh).is_some()) && visuals.next().is_some()
+        };
+        for mesh in link.meshes.iter().filter(|mesh| !is_seen(mesh)) {
+            line(format!("# mesh: {}", one_line(mesh)));
+        }
         match joint {
-            None => line(format!("joint = {{ kind = \"{}\" }}", if floats { "free" } else { "fixed" })),
+            None => {
+                line(format!("joint = {{ kind = \"{}\" }}", if options.floating { "free" } else { "fixed" }))
+            }
             Some(joint) => {
                 joint.remarks.iter().for_each(|remark| line(format!("# {}", one_line(remark))));
                 if self.names.coordinate(joint).is_some_and(|x| x != joint.name) {

@@ -6,7 +6,7 @@ use crate::diagnostics::source::Source;
 use crate::import::error::UrdfError;
 use crate::import::leftover;
 use crate::import::pose::{Pose, of_quaternion};
-use crate::import::robot::{Inertial, Joint, Kind, Link, Mimic, Robot};
+use crate::import::robot::{Inertial, Joint, Kind, Link, Mimic, Robot, Visual};
 use crate::import::xml::{Reader, child};
 
 /// Reads a robot.
@@ -90,8 +90,21 @@ impl Urdf<'_> {
                 files.push(file.to_owned());
             }
         }
+        let visuals = node.children().filter(|child| child.tag_name().name() == "visual");
+        let visuals =
+            visuals.filter_map(|visual| self.visual(visual).transpose()).collect::<Result<_, _>>()?;
         let inertial = child(node, "inertial").map(|inertial| self.inertial(inertial)).transpose()?;
-        Ok(Link { inertial, meshes: files, ..Link::empty(&name, self.xml.tag(node)) })
+        Ok(Link { inertial, meshes: files, visuals, ..Link::empty(&name, self.xml.tag(node)) })
+    }
+
+    /// The mesh of a `<visual>`, if it is one.
+    fn visual(&self, node: Node<'_, '_>) -> Result<Option<Visual>, UrdfError> {
+        let mesh = child(node, "geometry").and_then(|geometry| child(geometry, "mesh"));
+        let Some((mesh, file)) = mesh.and_then(|mesh| Some((mesh, mesh.attribute("filename")?))) else {
+            return Ok(None);
+        };
+        let scale = self.xml.vector(mesh, "scale")?.unwrap_or([1.0; 3]);
+        Ok(Some(Visual { file: file.to_owned(), origin: self.pose(node)?, scale }))
     }
 
     fn inertial(&self, node: Node<'_, '_>) -> Result<Inertial, UrdfError> {

@@ -1,5 +1,7 @@
 //! `[[draw]]`, and the shapes drawn automatically.
 
+use std::path::PathBuf;
+
 use pc_mech::{Expr, Graph};
 use pc_model::{Arrow, Assembly, Builtin, Document, Model, ModelError, Quantity, Shape, Source};
 
@@ -264,4 +266,85 @@ fn all_models_are_drawn() {
         let assembly = model.assemble(&graph).unwrap();
         assert!(!model.drawing(&assembly).unwrap().is_empty(), "{}", builtin.name);
     }
+}
+
+/// What is drawn in the axes of a body is where its points are, and turns with it.
+#[test]
+fn shapes_follow_the_bodies_that_carry_them() {
+    let shapes = |drawn: &str| {
+        let text = format!("{ARMS}[drawing]\nhide = [\"hub\", \"left\"]\n{drawn}");
+        let model = Model::new(Document::parse(Source::new("robots/model.toml", text)).unwrap());
+        let graph = Graph::new();
+        let assembly = model.assemble(&graph).unwrap();
+        let shapes = model.drawing(&assembly).unwrap();
+        let state = [("hub", 0.3), ("left", 0.4)].map(|(name, angle)| (graph.symbol(name), angle));
+        let numbers = |shape: &Shape<'_>| graph.evaluate(&shape.functions(), &state).unwrap();
+        (shapes.iter().map(numbers).collect::<Vec<_>>(), shapes.into_iter().next_back().map(kind_of))
+    };
+    fn kind_of(shape: Shape<'_>) -> Option<(PathBuf, [f64; 3])> {
+        match shape {
+            Shape::Mesh { file, scale, .. } => Some((file, scale)),
+            _ => None,
+        }
+    }
+    let near = |found: &[f64], wanted: &[f64]| {
+        let is_near = found.len() == wanted.len()
+            && found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() < 1e-14);
+        assert!(is_near, "{found:?}, not {wanted:?}");
+    };
+    let (point, _) = shapes("[[draw]]\nkind = \"point\"\nbody = \"left\"\nat = [1, 0, 0]\n");
+    near(&point[1], &point[0]);
+    let (sin, cos) = 0.7_f64.sin_cos();
+    let (joint, turned) =
+        ([0.3_f64.cos(), 0.3_f64.sin(), 0.0], [cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0]);
+    let (disc, _) =
+        shapes("[[draw]]\nkind = \"disc\"\nbody = \"left\"\nat = [0, 2]\nnormal = [1, 0, 0]\nradius = 0.5\n");
+    near(&disc[1], &[joint[0] - 2.0 * sin, joint[1] + 2.0 * cos, 0.0, cos, sin, 0.0, 0.5]);
+    let (boxed, _) = shapes("[[draw]]\nkind = \"box\"\nbody = \"left\"\nat = [0, 0]\nsize = [1, 2, 3]\n");
+    near(&boxed[1], &[&joint[..], &[1.0, 2.0, 3.0], &turned].concat());
+    let (mesh, of_file) = shapes(
+        "[[draw]]\nkind = \"mesh\"\nbody = \"left\"\nfile = \"meshes/arm.stl\"\nscale = 0.001\n\
+         rotation = [0, -1, 0, 1, 0, 0, 0, 0, 1]\n",
+    );
+    near(&mesh[1], &[&joint[..], &[-sin, -cos, 0.0, cos, -sin, 0.0, 0.0, 0.0, 1.0]].concat());
+    assert_eq!(of_file, Some(Some((PathBuf::from("robots/meshes/arm.stl"), [0.001; 3]))));
+}
+
+#[test]
+fn a_body_that_is_drawn_in_its_own_axes_is_no_box_but_others_are() {
+    let model = Builtin::named("satellite").unwrap();
+    let boxes = |drawn: &str| {
+        let text = format!("{}\n{drawn}", model.text);
+        let model = Model::new(Document::parse(Source::new("satellite.toml", text)).unwrap());
+        let graph = Graph::new();
+        let assembly = model.assemble(&graph).unwrap();
+        let shapes = model.drawing(&assembly).unwrap();
+        shapes.iter().filter(|shape| matches!(shape, Shape::Box { .. })).count()
+    };
+    assert_eq!(boxes(""), 4);
+    let document = model.document().unwrap();
+    let first = &document.tree[0].name.text;
+    assert_eq!(boxes(&format!("[[draw]]\nkind = \"mesh\"\nbody = \"{first}\"\nfile = \"a.obj\"\n")), 3);
+    assert_eq!(boxes("[[draw]]\nkind = \"point\"\nat = [0, 0]\n"), 0);
+}
+
+#[test]
+fn shapes_in_no_axes_and_of_no_size_are_refused_in_full() {
+    let refused = |draw: &str, bodies: &str| {
+        let text = format!("[[draw]]\n{draw}\n{bodies}");
+        Document::parse(Source::new("m.toml", text)).unwrap_err().to_string()
+    };
+    let shapes = [
+        ("kind = \"point\"\nbody = \"lift\"\nat = [0, 0]", ARMS),
+        ("kind = \"mesh\"\nfile = \"a.stl\"\nscale = [1, 0, 1]", ARMS),
+        ("kind = \"mesh\"\nfile = \"a.stl\"\nscale = [1, 1]", ARMS),
+        ("kind = \"mesh\"\nbody = \"hub\"", ARMS),
+        (
+            "kind = \"mesh\"\nbody = \"top\"\nfile = \"a.stl\"",
+            "[algebra]\nname = \"so3\"\n[bodies.top]\nmass = 1\nposition = [0, 0, 0]\ninertia = [1, 1, 1]\n\
+             angular_velocity = [\"ω1\", \"ω2\", \"ω3\"]\n",
+        ),
+    ];
+    let messages: Vec<String> = shapes.iter().map(|(draw, bodies)| refused(draw, bodies)).collect();
+    insta::assert_snapshot!(messages.join("\n"));
 }

@@ -120,6 +120,18 @@ impl Ink {
         }
     }
 
+    /// The colour with this opacity on a white background.
+    #[must_use]
+    pub(crate) fn faded(self, opacity: f64) -> Ink {
+        Ink::Mixed(self.colour().map(|c| (255.0 - opacity * (255.0 - f64::from(c))).round() as u8))
+    }
+
+    /// The colour in a light of this brightness, from 0 to 1.
+    #[must_use]
+    pub(crate) fn shaded(self, bright: f64) -> Ink {
+        Ink::Mixed(self.colour().map(|c| (bright * f64::from(c)).round() as u8))
+    }
+
     /// The width of a line.
     pub fn width(self) -> f64 {
         match self {

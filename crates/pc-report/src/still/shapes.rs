@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::mesh::Mesh;
 use crate::picture::{Anchor, Drawing, Ink};
 use crate::scene::SceneShape;
 use crate::still::camera::{Camera, Seen, length, vector};
@@ -18,6 +19,19 @@ const WINDING: f64 = 8.0;
 /// The length of axes, in units of the size of the scene.
 const AXIS: f64 = 0.12;
 
+/// Half the width of a rod, in units of the size of the scene, and its colour.
+const ROD: f64 = 0.0095;
+const GREY: Ink = Ink::Mixed([132, 139, 151]);
+/// The number of circles of which a ball is made, and how far its brightest place is towards the light.
+const RINGS: usize = 6;
+const GLOSS: f64 = 0.55;
+/// The direction to the light on the paper: right, down, away; of length 1.
+const LIGHT: [f64; 3] = [-0.36, -0.48, -0.8];
+/// The part of the light that comes from everywhere.
+const AMBIENT: f64 = 0.62;
+/// How much of white is mixed into the colour of a surface.
+const PALE: f64 = 0.3;
+
 /// The corners of the faces of a box: the bits of each number select the ends of its edges.
 const FACES: [[usize; 4]; 6] =
     [[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]];
@@ -26,7 +40,7 @@ const FACES: [[usize; 4]; 6] =
 pub(super) fn draw(
     drawing: &mut Drawing,
     camera: &Camera,
-    shape: &SceneShape,
+    (shape, meshes): (&SceneShape, &[[Mesh; 2]]),
     numbers: &[f32],
     ink: Ink,
     trace: &[[f64; 3]],
@@ -36,18 +50,19 @@ pub(super) fn draw(
     let place = |p: [f64; 3]| camera.project(p).at;
     match shape {
         SceneShape::Point(label) => {
-            drawing.filled(circle(seen, DOT), ink);
+            ball(drawing, seen, DOT, ink);
             if let Some(label) = label {
                 let beside = [seen.at[0] + 1.5 * DOT, seen.at[1] - DOT];
                 drawing.text(beside, Anchor::Start, LETTERS, Ink::Soft, label.clone());
             }
         }
         SceneShape::Sphere => {
-            drawing.filled(circle(seen, (f64::from(numbers[3]).abs() * seen.scale).max(1.0)), ink);
+            ball(drawing, seen, (f64::from(numbers[3]).abs() * seen.scale).max(1.0), ink);
         }
         SceneShape::Line(_) => {
-            drawing
-                .line((0..numbers.len()).step_by(3).map(|i| place(vector(numbers, i))).collect(), Ink::Rod);
+            let corners: Vec<Seen> =
+                (0..numbers.len()).step_by(3).map(|i| camera.project(vector(numbers, i))).collect();
+            rods(drawing, camera, &corners);
         }
         SceneShape::Disc => {
             let rim = rim(at, vector(numbers, 3), f64::from(numbers[6])).map(place);
@@ -59,18 +74,18 @@ pub(super) fn draw(
             drawing.line(rim, ink);
         }
         SceneShape::Box => {
-            let edges = vector(numbers, 3);
-            let corner = |bits: usize| {
-                let end = |k: usize| ((bits >> k & 1) as f64 - 0.5) * edges[k];
-                camera.project(turned(at, &numbers[6..], [end(0), end(1), end(2)]))
-            };
-            let mut faces = FACES.map(|face| face.map(corner));
+            let corners = corners_of_box(numbers).map(|p| camera.project(p));
+            let mut faces = FACES.map(|face| face.map(|corner| corners[corner]));
             let depth = |face: &[Seen; 4]| face.iter().map(|corner| corner.depth).sum::<f64>();
             faces.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
             for face in faces {
-                outlined(drawing, face.map(|corner| corner.at).to_vec(), ink, 0.2);
+                let mut rim = face.map(|corner| corner.at).to_vec();
+                drawing.filled(rim.clone(), lit([face[0], face[1], face[2]], ink));
+                rim.push(rim[0]);
+                drawing.line(rim, ink);
             }
         }
+        SceneShape::Mesh(index) => surface(drawing, camera, &meshes[*index][1], numbers, ink),
         SceneShape::Axes => {
             for k in 0..3 {
                 let mut end = [0.0; 3];
@@ -84,10 +99,77 @@ pub(super) fn draw(
     }
 }
 
+/// Draws a surface in a light from above and from the left, behind the eye: the farthest triangles first.
+fn surface(drawing: &mut Drawing, camera: &Camera, mesh: &Mesh, numbers: &[f32], ink: Ink) {
+    let at = vector(numbers, 0);
+    let corners: Vec<Seen> =
+        mesh.corners.iter().map(|p| camera.project(turned(at, &numbers[3..], p.map(f64::from)))).collect();
+    let mut faces: Vec<[Seen; 3]> =
+        mesh.faces.iter().map(|face| face.map(|corner| corners[corner as usize])).collect();
+    let depth = |face: &[Seen; 3]| face.iter().map(|corner| corner.depth).sum::<f64>();
+    faces.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
+    for face in faces {
+        let ink = lit(face, ink);
+        let mut rim = face.map(|corner| corner.at).to_vec();
+        drawing.filled(rim.clone(), ink);
+        // Without its edge there would be gaps between neighbours.
+        rim.push(rim[0]);
+        drawing.line(rim, ink);
+    }
+}
+
+/// The colour of a triangle by the angle between its normal and the light.
+fn lit(face: [Seen; 3], ink: Ink) -> Ink {
+    // On the paper, depths in its units: right, down, away.
+    let edge = |k: usize| {
+        let (a, b) = (face[0], face[k]);
+        [b.at[0] - a.at[0], b.at[1] - a.at[1], (b.depth - a.depth) * a.scale]
+    };
+    let normal = unit(cross(edge(1), edge(2)));
+    let cosine: f64 = normal.iter().zip(LIGHT).map(|(n, l)| n * l).sum();
+    let bright = AMBIENT + (1.0 - AMBIENT) * cosine.abs();
+    ink.faded(1.0 - PALE).shaded(bright)
+}
+
+/// Draws a ball in the same light, its middle the brightest.
+fn ball(drawing: &mut Drawing, seen: Seen, radius: f64, ink: Ink) {
+    for ring in 0..RINGS {
+        let part = ring as f64 / RINGS as f64;
+        let to_light = |k: usize| seen.at[k] + GLOSS * part * radius * LIGHT[k];
+        let at = [to_light(0), to_light(1)];
+        let corners = circle(Seen { at, ..seen }, radius * (1.0 - part));
+        drawing
+            .filled(corners, ink.faded(1.0 - 0.55 * part * part).shaded(0.8 + 0.2 * (2.0 * part).min(1.0)));
+    }
+}
+
+/// Draws rods from corner to corner, with joints as wide as they are.
+fn rods(drawing: &mut Drawing, camera: &Camera, corners: &[Seen]) {
+    let half = |seen: &Seen| (ROD * camera.size * seen.scale).max(1.0);
+    for (part, grey) in [(1.0, GREY), (0.45, GREY.faded(0.6))] {
+        // The bright line is towards the light.
+        let shift = |seen: &Seen, k: usize| seen.at[k] + (1.0 - part) * 0.5 * half(seen) * LIGHT[k];
+        let ends: Vec<([f64; 2], f64)> =
+            corners.iter().map(|seen| ([shift(seen, 0), shift(seen, 1)], part * half(seen))).collect();
+        for two in ends.windows(2) {
+            let [(a, ra), (b, rb)] = [two[0], two[1]];
+            let way = [b[0] - a[0], b[1] - a[1]];
+            let length = way[0].hypot(way[1]);
+            if length > 0.0 {
+                let side = [-way[1] / length, way[0] / length];
+                let beside = |p: [f64; 2], r: f64| [p[0] + r * side[0], p[1] + r * side[1]];
+                drawing.filled(vec![beside(a, ra), beside(b, rb), beside(b, -rb), beside(a, -ra)], grey);
+            }
+        }
+        for (seen, (at, radius)) in corners.iter().zip(&ends) {
+            drawing.filled(circle(Seen { at: *at, ..*seen }, *radius), grey);
+        }
+    }
+}
+
 /// Draws an area, with its edge, with a given opacity on white.
 fn outlined(drawing: &mut Drawing, mut corners: Vec<[f64; 2]>, ink: Ink, part: f64) {
-    let pale = ink.colour().map(|c| (255.0 - part * (255.0 - f64::from(c))).round() as u8);
-    drawing.filled(corners.clone(), Ink::Mixed(pale));
+    drawing.filled(corners.clone(), ink.faded(part));
     corners.extend(corners.first().copied());
     drawing.line(corners, ink);
 }
@@ -100,8 +182,17 @@ fn circle(middle: Seen, radius: f64) -> Vec<[f64; 2]> {
     (0..CORNERS).map(corner).collect()
 }
 
+/// The corners of a box; the bits of each index select the ends of its edges.
+pub(super) fn corners_of_box(numbers: &[f32]) -> [[f64; 3]; 8] {
+    let (at, edges) = (vector(numbers, 0), vector(numbers, 3));
+    std::array::from_fn(|bits| {
+        let end = |k: usize| ((bits >> k & 1) as f64 - 0.5) * edges[k];
+        turned(at, &numbers[6..], [end(0), end(1), end(2)])
+    })
+}
+
 /// The points of the rim of a disc perpendicular to a normal.
-fn rim(middle: [f64; 3], normal: [f64; 3], radius: f64) -> impl Iterator<Item = [f64; 3]> {
+pub(super) fn rim(middle: [f64; 3], normal: [f64; 3], radius: f64) -> impl Iterator<Item = [f64; 3]> {
     let n = unit(normal);
     let a = unit(cross(n, if n[0].abs() > 0.9 { [0.0, 1.0, 0.0] } else { [1.0, 0.0, 0.0] }));
     let b = cross(n, a);
@@ -121,7 +212,7 @@ fn unit(a: [f64; 3]) -> [f64; 3] {
 }
 
 /// The point `at` + R v, with R given row by row.
-fn turned(at: [f64; 3], rotation: &[f32], v: [f64; 3]) -> [f64; 3] {
+pub(super) fn turned(at: [f64; 3], rotation: &[f32], v: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|k| {
         let row = vector(rotation, 3 * k);
         at[k] + row[0] * v[0] + row[1] * v[1] + row[2] * v[2]

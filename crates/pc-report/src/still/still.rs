@@ -3,7 +3,7 @@
 use crate::picture::{Anchor, Drawing, Ink};
 use crate::scene::{Scene, SceneShape};
 use crate::still::camera::{Camera, vector};
-use crate::still::shapes;
+use crate::still::{ground, shadows, shapes};
 
 /// The height of the letters of the title and the clock.
 const LETTERS: f64 = 14.0;
@@ -18,7 +18,7 @@ impl Scene {
         let mut drawing = Drawing { width, height, shapes: Vec::new() };
         let Some(last) = self.times.len().checked_sub(1) else { return drawing };
         let number = number.min(last);
-        let camera = Camera::of(self, [width, height]);
+        let camera = Camera::of(self, [width, height], number);
         let all = self.width();
         let still = |i: usize| &self.stills[i * all..(i + 1) * all];
         let (mut own, mut from, mut colours) = (Vec::new(), 0, 0);
@@ -34,11 +34,16 @@ impl Scene {
             from += shape.numbers();
         }
         own.sort_by(|a, b| b.0.total_cmp(&a.0));
-        for (_, shape, numbers, ink, trace) in own {
-            // What is not defined at this time is not there.
-            if numbers.iter().all(|number| number.is_finite()) {
-                shapes::draw(&mut drawing, &camera, shape, numbers, ink, &trace);
+        // What is not defined at this time is not there.
+        own.retain(|(_, _, numbers, ..)| numbers.iter().all(|number| number.is_finite()));
+        if !camera.is_plane {
+            for (_, shape, numbers, ..) in &own {
+                shadows::draw(&mut drawing, &camera, (shape, &self.meshes), numbers);
             }
+        }
+        ground::draw(&mut drawing, &camera);
+        for (_, shape, numbers, ink, trace) in own {
+            shapes::draw(&mut drawing, &camera, (shape, &self.meshes), numbers, ink, &trace);
         }
         let clock = format!("t = {:.3}", self.times[number]);
         drawing.text([EDGE, EDGE + LETTERS], Anchor::Start, LETTERS, Ink::Text, title);
@@ -56,6 +61,7 @@ impl SceneShape {
             | SceneShape::Ring
             | SceneShape::Sphere
             | SceneShape::Box
+            | SceneShape::Mesh(_)
             | SceneShape::Trace => true,
             SceneShape::Line(_) | SceneShape::Axes | SceneShape::Spring | SceneShape::Text(_) => false,
         }

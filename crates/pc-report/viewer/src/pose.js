@@ -3,7 +3,7 @@
 import { Matrix4, Quaternion } from "three";
 
 // Where the rotation matrix begins among the numbers of a shape.
-const ROTATIONS = { box: 6, axes: 3 };
+const ROTATIONS = { box: 6, axes: 3, mesh: 3 };
 // How far the determinant of a rotation may be from 1.
 const SLACK = 1e-3;
 

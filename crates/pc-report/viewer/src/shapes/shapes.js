@@ -6,13 +6,14 @@ import { Box } from "./box.js";
 import { Disc } from "./disc.js";
 import { Line } from "./line.js";
 import { colour } from "./material.js";
+import { Surface } from "./mesh.js";
 import { Point } from "./point.js";
 import { Ring } from "./ring.js";
 import { Sphere } from "./sphere.js";
 import { Spring } from "./spring.js";
 
 const BUILDERS = {
-  axes: Axes, box: Box, disc: Disc, line: Line, point: Point, ring: Ring, sphere: Sphere, spring: Spring,
+  axes: Axes, box: Box, disc: Disc, line: Line, mesh: Surface, point: Point, ring: Ring, sphere: Sphere, spring: Spring,
 };
 
 export class Shapes {
