@@ -49,6 +49,21 @@ impl Mesh {
         }
     }
 
+    /// The surface about the middle of the box around it, and the place of that.
+    #[must_use]
+    pub fn centred(mut self) -> (Mesh, [f64; 3]) {
+        let middle = [0, 1, 2].map(|k| {
+            let along = || self.corners.iter().map(|p| p[k]);
+            let (low, high) =
+                (along().fold(f32::INFINITY, f32::min), along().fold(f32::NEG_INFINITY, f32::max));
+            f64::midpoint(f64::from(low), f64::from(high))
+        });
+        for corner in &mut self.corners {
+            *corner = [0, 1, 2].map(|k| (f64::from(corner[k]) - middle[k]) as f32);
+        }
+        (self, middle)
+    }
+
     /// The surface with at most this many triangles: corners that lie in one cell of a grid become one.
     #[must_use]
     pub fn simplified(&self, most: usize) -> Mesh {
@@ -129,6 +144,11 @@ mod tests {
         let obj = read("t.obj", obj, [1.0, 2.0, 0.001]).unwrap();
         assert_eq!((stl.corners.len(), stl.faces.len()), (4, 4));
         assert_eq!(stl.reach(), [1.0, 2.0, 0.001]);
+        let (centred, middle) = stl.clone().centred();
+        assert_eq!(
+            (centred.reach(), middle),
+            ([0.5, 1.0, 0.0005], [0.5, 1.0, 0.0005].map(|x: f32| x.into()))
+        );
         let places = |mesh: &Mesh| {
             let face = |face: &[u32; 3]| face.map(|corner| mesh.corners[corner as usize].map(f32::to_bits));
             mesh.faces.iter().map(face).collect::<HashSet<_>>()

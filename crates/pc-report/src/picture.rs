@@ -21,6 +21,7 @@ mod simplify;
 mod svg;
 pub(crate) mod units;
 
+pub(crate) use drawing::GLASS;
 pub use drawing::{Anchor, Drawing, Ink, Shape};
 pub use motion::Wanted;
 pub use panel::{Band, Content, Curve, Fan, Panel, Root, Scale};

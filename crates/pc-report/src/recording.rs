@@ -48,6 +48,8 @@ pub struct Recording {
     pub summary: Vec<(String, Vec<String>)>,
     /// Whether the energy, the last of the conserved columns, is an integral.
     pub keeps_energy: bool,
+    /// Whether it was compared with a second derivation, and agrees.
+    pub agrees: bool,
     /// The times at which events occurred.
     pub events: Vec<f64>,
     /// The units of columns, as pairs of names.

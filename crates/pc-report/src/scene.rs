@@ -35,7 +35,7 @@ pub enum SceneShape {
     Box,
     /// The common point of the axes, and the rows of a rotation matrix.
     Axes,
-    /// The place of the origin of a surface with this index, and the rows of a rotation matrix.
+    /// The place of the middle of a surface with this index, and the rows of a rotation matrix.
     Mesh(usize),
     /// The two ends.
     Spring,
@@ -151,7 +151,9 @@ pub struct Scene {
 #[derive(Default)]
 struct Surfaces {
     files: Vec<(PathBuf, [f64; 3])>,
+    /// Each about its middle, the place of which is among the middles.
     meshes: Vec<Mesh>,
+    middles: Vec<[f64; 3]>,
 }
 
 impl Surfaces {
@@ -166,11 +168,21 @@ impl Surfaces {
             if surfaces.index(file, *scale).is_none() {
                 let mesh =
                     Mesh::read(file, *scale).map_err(|error| model.not_drawn(file, error.to_string()))?;
+                let (mesh, middle) = mesh.centred();
                 surfaces.files.push((file.clone(), *scale));
                 surfaces.meshes.push(mesh);
+                surfaces.middles.push(middle);
             }
         }
         Ok(surfaces)
+    }
+
+    /// A shape that is at its middle: x + R c.
+    fn centred<'g>(&self, graph: &'g Graph, shape: Shape<'g>) -> Shape<'g> {
+        let Shape::Mesh { file, scale, at, rotation } = shape else { return shape };
+        let middle = self.index(&file, scale).map_or([0.0; 3], |index| self.middles[index]).map(Expr::from);
+        let at = [0, 1, 2].map(|i| at[i] + graph.dot((0..3).map(|j| rotation[(i, j)]), middle));
+        Shape::Mesh { file, scale, at, rotation }
     }
 
     fn index(&self, file: &Path, scale: [f64; 3]) -> Option<usize> {
@@ -289,6 +301,9 @@ impl Scene {
             return Ok(None);
         }
         let surfaces = Surfaces::of(model, &drawing)?;
+        let graph = assembly.system.graph();
+        let drawing: Vec<Shape<'_>> =
+            drawing.into_iter().map(|shape| surfaces.centred(graph, shape)).collect();
         let known = Known::of(assembly, record);
         let functions: Vec<Expr<'_>> = drawing.iter().flat_map(Shape::functions).collect();
         let mut functions = known.by_columns(&functions);

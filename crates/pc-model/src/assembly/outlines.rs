@@ -7,7 +7,7 @@ use crate::assembly::block::Block;
 use crate::assembly::placed::{rotation, spot};
 use crate::assembly::shape::{Shape, Spot};
 use crate::diagnostics::error::ModelError;
-use crate::document::{Body, Document, Expression, Inertia, JointKind, Orientation};
+use crate::document::{Body, Document, DrawnShape, Expression, Inertia, JointKind, Located, Orientation};
 use crate::names::scope::Scope;
 use crate::names::stage::Stage;
 
@@ -79,7 +79,7 @@ impl<'a, 'd, 'g> Outlines<'a, 'd, 'g> {
     }
 
     /// The mass centre of a body, and a rod from its joint to each joint and point that it carries, or to the mass centre if it
-    /// carries none. A body on a free joint, or with its mass centre at the joint, is a box.
+    /// carries none. A body on a free joint, or with its mass centre at the joint, is a box. One with a surface has no rods.
     fn on_joint(&self, tree: &Tree<'g>, body: &TreeBody<'g>) -> Option<Vec<Shape<'g>>> {
         let (motions, graph) = (tree.motions(), self.assembly.system.graph());
         let (place, rotation) = (motions.place(body.name())?, motions.rotation(body.name())?);
@@ -100,10 +100,18 @@ impl<'a, 'd, 'g> Outlines<'a, 'd, 'g> {
         let block = is_box.then(|| self.block((mass, &inertia), centre, &rotation)).flatten();
         let mut shapes = match block {
             Some(block) => vec![block],
+            None if self.is_covered(body.name()) => Vec::new(),
             None => rods.into_iter().map(|end| Shape::Line { through: vec![place, end] }).collect(),
         };
         shapes.push(Shape::Point { at: centre, label: Some(body.name().to_owned()) });
         Some(shapes)
+    }
+
+    /// Whether the text draws the surface of a body.
+    fn is_covered(&self, name: &str) -> bool {
+        let is_of = |body: &Located<String>| body.value == name;
+        let mut drawn = self.document.draw.iter().filter(|draw| draw.body.as_ref().is_some_and(is_of));
+        drawn.any(|draw| matches!(draw.shape, DrawnShape::Mesh { .. }))
     }
 
     fn is_free(&self, name: &str) -> bool {

@@ -41,7 +41,7 @@ pub fn nearest(times: &[f64], time: f64) -> usize {
 pub fn gif(drawings: impl Iterator<Item = Drawing>) -> Result<Vec<u8>, PictureError> {
     let encoding = |error: gif::EncodingError| PictureError::Encode { message: error.to_string() };
     let glyphs = Glyphs::new()?;
-    let mut encoder = None;
+    let (mut encoder, mut before) = (None, Vec::new());
     for drawing in drawings {
         let pixels = painted(&drawing, SCALE, &glyphs)?;
         let (width, height) = (pixels.width(), pixels.height());
@@ -55,7 +55,9 @@ pub fn gif(drawings: impl Iterator<Item = Drawing>) -> Result<Vec<u8>, PictureEr
                 encoder.insert(begun)
             }
         };
-        let mut frame = Frame::from_rgb_speed(wide, high, &opaque(&pixels), SPEED);
+        let seen = coarse(opaque(&pixels));
+        let mut frame = Frame::from_rgba_speed(wide, high, &mut changed(&seen, &before), SPEED);
+        before = seen;
         frame.delay = DELAY;
         encoder.write_frame(&frame).map_err(encoding)?;
     }
@@ -67,9 +69,35 @@ pub fn gif(drawings: impl Iterator<Item = Drawing>) -> Result<Vec<u8>, PictureEr
     }
 }
 
+/// The colours with 32 steps of red, green and blue, which are hardly seen, and compress better.
+fn coarse(mut pixels: Vec<u8>) -> Vec<u8> {
+    pixels.iter_mut().for_each(|part| *part = *part & 0xf8 | *part >> 5);
+    pixels
+}
+
+/// The red, green, blue and opacity of each pixel: what is as in the still before lets it through.
+fn changed(pixels: &[u8], before: &[u8]) -> Vec<u8> {
+    let is_same = |i: usize, pixel: &[u8]| before.get(3 * i..3 * i + 3) == Some(pixel);
+    let pixels = pixels.chunks_exact(3).enumerate();
+    let through = |(i, pixel): (usize, &[u8])| match is_same(i, pixel) {
+        true => [0; 4],
+        false => [pixel[0], pixel[1], pixel[2], 255],
+    };
+    pixels.flat_map(through).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_does_not_change_is_not_written_again() {
+        let (white, red) = ([255; 3], [200, 0, 9]);
+        let before = [white, white].concat();
+        assert_eq!(coarse([red, white].concat()), [206, 0, 8, 255, 255, 255]);
+        assert_eq!(changed(&[red, white].concat(), &before), [200, 0, 9, 255, 0, 0, 0, 0]);
+        assert_eq!(changed(&before, &[]), [255; 8]);
+    }
 
     #[test]
     fn a_film_is_as_long_as_its_motion() {

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::Write as _;
 
-use crate::picture::{Drawing, Ink, Shape};
+use crate::picture::{Drawing, GLASS, Ink, Shape};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use ttf_parser::{GlyphId, OutlineBuilder};
@@ -34,7 +34,8 @@ pub fn pdf(drawing: &Drawing) -> Result<Vec<u8>, PictureError> {
     file.object(2, b"<< /Type /Pages /Kids [3 0 R] /Count 1 >>");
     let stream = file.stream(content.as_bytes())?;
     let page = format!(
-        "<< /Type /Page /Parent 2 0 R /MediaBox [0 0 {width} {height}] /Contents {stream} 0 R /Resources << {resources} >> >>"
+        "<< /Type /Page /Parent 2 0 R /MediaBox [0 0 {width} {height}] /Contents {stream} 0 R /Resources << \
+         /ExtGState << /Glass << /ca {GLASS} >> /Opaque << /ca 1 >> >> {resources} >> >>"
     );
     file.object(3, page.as_bytes());
     Ok(file.end())
@@ -69,12 +70,11 @@ fn add_all(content: &mut String, shapes: &[Shape], fonts: &mut Fonts<'_>) {
                     to[1] - from[1]
                 ),
             ),
-            Shape::Filled { corners, ink } => {
-                add(content, format_args!("{} rg\n", colour(*ink)));
-                for (i, [x, y]) in corners.iter().enumerate() {
-                    add(content, format_args!("{x:.2} {y:.2} {}\n", if i == 0 { "m" } else { "l" }));
-                }
-                content.push_str("f\n");
+            Shape::Filled { corners, ink } => fill(content, corners, *ink),
+            Shape::Glass { corners, ink } => {
+                content.push_str("/Glass gs\n");
+                fill(content, corners, *ink);
+                content.push_str("/Opaque gs\n");
             }
             Shape::Titled { shapes, .. } => add_all(content, shapes, fonts),
             Shape::Text { at, anchor, size, ink, text } => {
@@ -94,6 +94,14 @@ fn add_all(content: &mut String, shapes: &[Shape], fonts: &mut Fonts<'_>) {
             }
         }
     }
+}
+
+fn fill(content: &mut String, corners: &[[f64; 2]], ink: Ink) {
+    add(content, format_args!("{} rg\n", colour(ink)));
+    for (i, [x, y]) in corners.iter().enumerate() {
+        add(content, format_args!("{x:.2} {y:.2} {}\n", if i == 0 { "m" } else { "l" }));
+    }
+    content.push_str("f\n");
 }
 
 fn colour(ink: Ink) -> String {

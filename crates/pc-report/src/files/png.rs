@@ -1,6 +1,6 @@
 //! Drawings as bitmaps.
 
-use crate::picture::{Drawing, Ink, Shape};
+use crate::picture::{Drawing, GLASS, Ink, Shape};
 use tiny_skia::{
     FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Rect, Stroke, StrokeDash, Transform,
 };
@@ -53,12 +53,8 @@ fn paint_all(pixels: &mut Pixmap, shapes: &[Shape], scale: Transform, glyphs: &G
                     pixels.fill_rect(rect, &paint, scale, None);
                 }
             }
-            Shape::Filled { corners, ink } => {
-                let mut path = path(corners);
-                path.close();
-                let Some(path) = path.finish() else { continue };
-                pixels.fill_path(&path, &paint(*ink), FillRule::Winding, scale, None);
-            }
+            Shape::Filled { corners, ink } => fill(pixels, corners, &paint(*ink), scale),
+            Shape::Glass { corners, ink } => fill(pixels, corners, &glass(*ink), scale),
             Shape::Titled { shapes, .. } => paint_all(pixels, shapes, scale, glyphs),
             Shape::Text { at, anchor, size, ink, text } => {
                 let unit = size / glyphs.units();
@@ -82,6 +78,14 @@ fn paint_all(pixels: &mut Pixmap, shapes: &[Shape], scale: Transform, glyphs: &G
     }
 }
 
+fn fill(pixels: &mut Pixmap, corners: &[[f64; 2]], paint: &Paint<'_>, scale: Transform) {
+    let mut path = path(corners);
+    path.close();
+    if let Some(path) = path.finish() {
+        pixels.fill_path(&path, paint, FillRule::Winding, scale, None);
+    }
+}
+
 fn path(points: &[[f64; 2]]) -> PathBuilder {
     let mut path = PathBuilder::new();
     for (i, &[x, y]) in points.iter().enumerate() {
@@ -89,6 +93,13 @@ fn path(points: &[[f64; 2]]) -> PathBuilder {
         if i == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
     }
     path
+}
+
+fn glass(ink: Ink) -> Paint<'static> {
+    let [red, green, blue] = ink.colour();
+    let mut paint = paint(ink);
+    paint.set_color_rgba8(red, green, blue, (255.0 * GLASS).round() as u8);
+    paint
 }
 
 fn paint(ink: Ink) -> Paint<'static> {

@@ -37,6 +37,13 @@ pub enum Shape {
         /// Its colour.
         ink: Ink,
     },
+    /// An area with these corners through which one sees what is behind it.
+    Glass {
+        /// The corners.
+        corners: Vec<[f64; 2]>,
+        /// Its colour.
+        ink: Ink,
+    },
     /// Shapes of which a viewer says something where the pointer is on them.
     Titled {
         /// What is said.
@@ -58,6 +65,9 @@ pub enum Shape {
         text: String,
     },
 }
+
+/// The opacity of [`Shape::Glass`].
+pub(crate) const GLASS: f64 = 0.45;
 
 /// The point of a text to which its position refers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -158,6 +168,10 @@ impl Drawing {
 
     pub(crate) fn filled(&mut self, corners: Vec<[f64; 2]>, ink: Ink) {
         self.shapes.push(Shape::Filled { corners, ink });
+    }
+
+    pub(crate) fn glass(&mut self, corners: Vec<[f64; 2]>, ink: Ink) {
+        self.shapes.push(Shape::Glass { corners, ink });
     }
 
     pub(crate) fn text(

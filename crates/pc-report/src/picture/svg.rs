@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::page::html::text;
-use crate::picture::drawing::{Anchor, Drawing, Ink, Shape};
+use crate::picture::drawing::{Anchor, Drawing, GLASS, Ink, Shape};
 
 /// The list of fonts from which a viewer chooses.
 const FONT: &str = "DejaVu Sans, Verdana, sans-serif";
@@ -70,6 +70,16 @@ fn separate(svg: &mut String, shapes: &[Shape]) {
                     format_args!("<path d=\"{}Z\" fill=\"{}\"/>\n", path(corners, 2), hexadecimal(*ink)),
                 );
             }
+            Shape::Glass { corners, ink } => {
+                put(
+                    svg,
+                    format_args!(
+                        "<path d=\"{}Z\" fill=\"{}\" fill-opacity=\"{GLASS}\"/>\n",
+                        path(corners, 2),
+                        hexadecimal(*ink)
+                    ),
+                );
+            }
             Shape::Titled { title, shapes } => {
                 put(svg, format_args!("<g><title>{}</title>\n", text(title)));
                 separate(svg, shapes);
@@ -111,6 +121,16 @@ fn on_page(svg: &mut String, shapes: &[Shape]) {
                 put(
                     svg,
                     format_args!("<path fill=\"{}\" d=\"{}Z\"/>\n", hexadecimal(*ink), path(corners, 1)),
+                );
+            }
+            Shape::Glass { corners, ink } => {
+                put(
+                    svg,
+                    format_args!(
+                        "<path fill=\"{}\" fill-opacity=\"{GLASS}\" d=\"{}Z\"/>\n",
+                        hexadecimal(*ink),
+                        path(corners, 1)
+                    ),
                 );
             }
             Shape::Titled { title, shapes } => {

@@ -101,7 +101,10 @@ impl Bounds {
     }
 }
 
-/// The size of the model where its path is so much longer that the view follows it.
+/// What is seen, in units of the size of the model, where the view follows it.
+const AROUND: f64 = 1.4;
+
+/// The size of what is seen where the path is so much longer than the model that the view follows it.
 pub(super) fn followed(scene: &Scene, all: &Bounds) -> Option<f64> {
     let stills = scene.stills.chunks_exact(scene.width().max(1));
     let model = stills.map(|numbers| Bounds::of(scene, numbers).size()).fold(0.0, f64::max);
@@ -110,7 +113,7 @@ pub(super) fn followed(scene: &Scene, all: &Bounds) -> Option<f64> {
     let is_ball = solid().count() == 1
         && solid().all(|shape| matches!(shape, SceneShape::Point(_) | SceneShape::Sphere));
     let (path, long) = (all.size(), if is_ball { LONG_FOR_A_BALL } else { LONG });
-    (model > NOTHING * path && path > long * model).then_some(model)
+    (model > NOTHING * path && path > long * model).then_some(AROUND * model)
 }
 
 /// How far a shape reaches from its first point along each of the fixed axes.

@@ -135,6 +135,7 @@ impl Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::SceneShape;
 
     fn scene(points: &[[f32; 3]], gravity: [f64; 3]) -> Scene {
         let times = (0..points.len()).map(|i| i as f64).collect();

@@ -29,6 +29,8 @@ const GLOSS: f64 = 0.55;
 const LIGHT: [f64; 3] = [-0.36, -0.48, -0.8];
 /// The part of the light that comes from everywhere.
 const AMBIENT: f64 = 0.62;
+/// The opacity of the colour of a disc's glass.
+const CLEAR: f64 = 0.75;
 /// How much of white is mixed into the colour of a surface.
 const PALE: f64 = 0.3;
 
@@ -66,7 +68,10 @@ pub(super) fn draw(
         }
         SceneShape::Disc => {
             let rim = rim(at, vector(numbers, 3), f64::from(numbers[6])).map(place);
-            outlined(drawing, rim.collect(), ink, 0.35);
+            let mut rim: Vec<_> = rim.collect();
+            drawing.glass(rim.clone(), ink.faded(CLEAR));
+            rim.extend(rim.first().copied());
+            drawing.line(rim, ink);
         }
         SceneShape::Ring => {
             let mut rim: Vec<_> = rim(at, vector(numbers, 3), f64::from(numbers[6])).map(place).collect();
@@ -80,7 +85,7 @@ pub(super) fn draw(
             faces.sort_by(|a, b| depth(b).total_cmp(&depth(a)));
             for face in faces {
                 let mut rim = face.map(|corner| corner.at).to_vec();
-                drawing.filled(rim.clone(), lit([face[0], face[1], face[2]], ink));
+                drawing.glass(rim.clone(), lit([face[0], face[1], face[2]], ink));
                 rim.push(rim[0]);
                 drawing.line(rim, ink);
             }
@@ -165,13 +170,6 @@ fn rods(drawing: &mut Drawing, camera: &Camera, corners: &[Seen]) {
             drawing.filled(circle(Seen { at: *at, ..*seen }, *radius), grey);
         }
     }
-}
-
-/// Draws an area, with its edge, with a given opacity on white.
-fn outlined(drawing: &mut Drawing, mut corners: Vec<[f64; 2]>, ink: Ink, part: f64) {
-    drawing.filled(corners.clone(), ink.faded(part));
-    corners.extend(corners.first().copied());
-    drawing.line(corners, ink);
 }
 
 fn circle(middle: Seen, radius: f64) -> Vec<[f64; 2]> {

@@ -7,6 +7,7 @@ use pc_report::{ColumnKind, Columns, Recording, Samples};
 use crate::motion::run::{Ending, Run};
 use crate::motion::summary;
 use crate::motion::table::Table;
+use crate::motion::verification::Verification;
 use pc_print::short;
 
 impl Run {
@@ -31,6 +32,7 @@ impl Run {
                 .map(|(label, lines)| (label.to_owned(), lines))
                 .collect(),
             keeps_energy: self.keeps_energy,
+            agrees: self.verification.as_ref().is_some_and(Verification::agrees),
             events: self.occurrences.iter().map(|occurrence| occurrence.time).collect(),
             units: self.units.clone(),
             remark,
