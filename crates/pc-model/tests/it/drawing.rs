@@ -341,7 +341,7 @@ fn shapes_in_no_axes_and_of_no_size_are_refused_in_full() {
         ("kind = \"mesh\"\nbody = \"hub\"", ARMS),
         (
             "kind = \"mesh\"\nbody = \"top\"\nfile = \"a.stl\"",
-            "[algebra]\nname = \"so3\"\n[bodies.top]\nmass = 1\nposition = [0, 0, 0]\ninertia = [1, 1, 1]\n\
+            "[quasi_velocities]\n\"ω1\" = 0\n\"ω2\" = 0\n\"ω3\" = 0\n[algebra]\nname = \"so3\"\n[bodies.top]\nmass = 1\nposition = [0, 0, 0]\ninertia = [1, 1, 1]\n\
              angular_velocity = [\"ω1\", \"ω2\", \"ω3\"]\n",
         ),
     ];
