@@ -17,6 +17,7 @@ pub(crate) fn of(category: Category) -> u8 {
         Category::Undefined => 4,
         Category::Failed => 5,
         Category::Unwritten => UNWRITTEN,
+        Category::Undecided => 7,
         Category::Interrupted => 130,
     }
 }

@@ -5,6 +5,8 @@
 pub enum Category {
     /// Two motions that were compared differ.
     Different,
+    /// The errors of two motions are too large to tell whether they differ.
+    Undecided,
     /// What was requested is wrong, whatever the model.
     Request,
     /// The text of the model is wrong, or asks for something that cannot be done yet.

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use crate::attack::victim::usage::Usage;
 
 /// The exit codes that the program has names for.
-const KNOWN: &[i32] = &[0, 2, 3, 4, 5, 6, 130];
+const KNOWN: &[i32] = &[0, 2, 3, 4, 5, 6, 7, 130];
 /// Address space of a run in KiB: its limit on expressions, and what machine code, threads and tables may take beside it.
 const ADDRESS_SPACE: u64 = 6 << 20;
 

@@ -30,7 +30,7 @@ use crate::args::tools::{CompletionsArguments, ManArguments, NewArguments, Schem
                   (`pc models` lists them).\n\
                   Exit codes: 0 done; 1 `pc compare` found a difference; 2 usage; 3 the model file is wrong; 4 the model is inconsistent, or its limits are reached; 5 the \
                   integration failed; 6 a result could not be written where it belongs, the message says where it is; \
-                  130 interrupted, what was reached is in FILE.partial."
+                  7 `pc compare` cannot tell; 130 interrupted, what was reached is in FILE.partial."
 )]
 pub struct Arguments {
     /// Print the version

@@ -38,11 +38,11 @@ pub struct CompareArguments {
     /// Tolerances and method.
     #[command(flatten)]
     pub integration: IntegrationArguments,
-    /// Allowed difference, as a fraction of the largest value in its column
-    #[arg(long, value_name = "P", default_value = "1e-6", allow_hyphen_values = true, value_parser = options::not_negative)]
+    /// Difference allowed in addition to errors of integration, as a fraction of the largest value in its column
+    #[arg(long, value_name = "P", default_value = "0", allow_hyphen_values = true, value_parser = options::not_negative)]
     pub tolerance: f64,
-    /// Difference allowed in addition, whatever the size of the values
-    #[arg(long, value_name = "D", default_value = "1e-9", allow_hyphen_values = true, value_parser = options::not_negative)]
+    /// Difference allowed in addition to errors of integration, whatever the size of the values
+    #[arg(long, value_name = "D", default_value = "0", allow_hyphen_values = true, value_parser = options::not_negative)]
     pub absolute: f64,
     /// Compare only these columns, separated by commas [default: all that both have]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]

@@ -80,13 +80,15 @@ as `pc new --schema` writes it.";
 pub(super) const COMPARE: &str = "\
 Examples:
   pc compare heavy-top-euler --form poincare,canonical
-  pc compare my-model.toml other-model.toml --columns x,z --tolerance 1e-8
+  pc compare my-model.toml other-model.toml --columns x,z --tolerance 1e-3
   pc compare heavy-top-quaternion heavy-top-euler --map \"1-2*(q1^2+q2^2)=cos(θ)\"
 
-A difference counts where it is more than D + P·(the largest value of its column); one of the energy counts \
-where --columns names it. Both motions are integrated at the same \
-times, each with the tolerances of its file unless these are given here.
-Exit codes: 0 nothing differs by more than is allowed; 1 something does; others as for `pc run`.";
+A difference counts where it is more than 3 times the errors of integration of both motions, which a second, more accurate \
+integration of each tells, and more than rounding; D + P·(the largest value of its column) is allowed in addition. Where the errors \
+leave less than three digits, as in a chaotic motion, the column is undecided. A difference of the energy counts where --columns \
+names it. Columns are compared as numbers: an angle and the same one a turn later, or a quaternion and its negative, differ. \
+Both motions are integrated at the same times, each with the tolerances of its file unless these are given here.
+Exit codes: 0 nothing differs; 1 something does; 7 undecided; others as for `pc run`.";
 
 pub(super) const BENCH: &str = "\
 Examples:

@@ -50,6 +50,7 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
         estimate: arguments.estimate,
         checkpoints: arguments.checkpoints.files(),
         cache: std::env::var_os("PC_CACHE_DIR").filter(|directory| !directory.is_empty()).map(Cache::new),
+        ..Besides::default()
     };
     // A picture needs all rows.
     let mut stream = file.as_ref().and_then(TableFile::stream).filter(|_| picture.is_none());

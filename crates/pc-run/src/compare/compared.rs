@@ -3,6 +3,7 @@
 use pc_model::Model;
 
 use crate::compare::comparison::{Comparison, Question};
+use crate::compare::difference::Verdict;
 use crate::compare::error::CompareError;
 use crate::error::RunError;
 use crate::motion::integrate::Besides;
@@ -21,9 +22,8 @@ pub struct Compared {
 }
 
 impl Compared {
-    /// Integrates the motions of two models, and compares them at the times of the first. Where the motions differ,
-    /// both are integrated once more at smaller tolerances, to distinguish different motions from errors of
-    /// integration.
+    /// Integrates the motions of two models, each with a companion that tells its errors of integration, and compares them
+    /// at the times of the first.
     ///
     /// # Errors
     /// [`CompareError`] if there is nothing to compare, and any error of a run. It is not an error if a
@@ -39,39 +39,35 @@ impl Compared {
         if first.t_start != second.t_start {
             return Err(CompareError::Starts { first: first.t_start, second: second.t_start }.into());
         }
-        let besides = Besides { verify: true, remarks: true, ..Besides::default() };
-        let run = |model: &Model, plan: &Plan, besides: &Besides| {
-            let run = Run::planned(model, plan.clone(), besides, observer)?;
+        let besides = Besides { verify: true, remarks: true, accuracy: true, ..Besides::default() };
+        let run = |model: &Model, plan: Plan| {
+            let run = Run::planned(model, plan, &besides, observer)?;
             match run.stopped() {
                 Some(stopped) => Err(stopped),
+                // Its companion was stopped.
+                None if observer.is_stopped() => Err(RunError::Interrupted { t: run.reached() }),
                 None => Ok(run),
             }
         };
-        let a = run(models[0], &first, &besides)?;
-        let b = run(models[1], &second, &besides)?;
-        let mut comparison = Comparison::new(&a, &b, None, question)?;
-        if !comparison.is_same() {
-            let finer =
-                |model, plan: &Plan, of: &Run| run(model, &plan.finer(&of.tolerances), &Besides::default());
-            // Where smaller tolerances cannot be met, there is nothing to tell errors by.
-            if let Ok(c) = finer(models[0], &first, &a)
-                && let Ok(d) = finer(models[1], &second, &b)
-            {
-                comparison = Comparison::new(&a, &b, Some((&c, &d)), question)?;
-            }
-        }
+        let (a, b) = (run(models[0], first)?, run(models[1], second)?);
+        let comparison = Comparison::new(&a, &b, question)?;
         Ok(Compared { runs: [a, b], comparison })
     }
 
     /// An error unless both motions were completed and agree.
     ///
     /// # Errors
-    /// [`CompareError::Different`], or the error of a motion.
+    /// [`CompareError::Different`], [`CompareError::Undecided`], or the error of a motion.
     pub fn outcome(self) -> Result<(), RunError> {
-        let differences = self.comparison.differing();
+        let verdict = self.comparison.verdict();
+        let (differences, untold) = (self.comparison.differing(), self.comparison.untold());
         let [a, b] = self.runs;
         a.outcome()?;
         b.outcome()?;
-        if differences.is_empty() { Ok(()) } else { Err(CompareError::Different { differences }.into()) }
+        match verdict {
+            Verdict::Same => Ok(()),
+            Verdict::Different => Err(CompareError::Different { differences }.into()),
+            Verdict::Undecided => Err(CompareError::Undecided { columns: untold }.into()),
+        }
     }
 }

@@ -1,17 +1,20 @@
 //! Two motions, compared column by column.
 
-use crate::compare::difference::{Allowance, Difference};
+use crate::compare::difference::{Allowance, Difference, Verdict};
 use crate::compare::error::CompareError;
+use crate::compare::events::{between_events, ends_allowed};
 use crate::compare::formula::Formula;
+use crate::compare::known::Known;
 use crate::motion::run::{Ending, Run};
+use crate::motion::table::Table;
 
 /// The column that nearly any two motions have in common.
 const ENERGY: &str = "energy";
 
 /// What to compare, and how closely.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Question {
-    /// The difference allowed.
+    /// The difference allowed in addition to errors of integration.
     pub allowance: Allowance,
     /// The columns to compare; if empty, all columns that both motions have.
     pub columns: Vec<String>,
@@ -23,10 +26,12 @@ pub struct Question {
 /// How two motions agree and differ.
 #[derive(Debug)]
 pub struct Comparison {
-    /// The difference allowed.
+    /// The difference allowed in addition to errors of integration.
     pub allowance: Allowance,
     /// The number of times at which the motions are compared.
     pub rows: usize,
+    /// The number of times that are left out, since an event has happened in one motion and not yet in another.
+    pub left_out: usize,
     /// The last time at which the motions are compared.
     pub until: f64,
     /// The difference of each column that is compared.
@@ -40,17 +45,12 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Compares two runs at the times that both have. If `finer` contains both runs at smaller tolerances, twice the resulting
-    /// changes are allowed in addition: they are errors of integration, which may have grown along the motion.
+    /// Compares two runs at the times that both have, by what each run knows [of its
+    /// accuracy](crate::motion::integrate::Besides::accuracy).
     ///
     /// # Errors
     /// [`CompareError`] if there is nothing to compare, or a name is unknown.
-    pub fn new(
-        first: &Run,
-        second: &Run,
-        finer: Option<(&Run, &Run)>,
-        question: &Question,
-    ) -> Result<Comparison, CompareError> {
+    pub fn new(first: &Run, second: &Run, question: &Question) -> Result<Comparison, CompareError> {
         let allowance = question.allowance;
         let times: Vec<f64> = (first.table.column(0).zip(second.table.column(0)))
             .take_while(|(a, b)| a == b)
@@ -66,30 +66,31 @@ impl Comparison {
             return Err(CompareError::NothingShared { first: names.to_vec(), second: others.to_vec() });
         }
         let is_wanted = |name: &&String| question.columns.is_empty() || question.columns.contains(name);
-        let difference = |name: &str, [a, b]: [Vec<f64>; 2], finer: Option<[Vec<f64>; 2]>| {
-            let uncertain = finer.map_or_else(Vec::new, |[c, d]| uncertain([&a, &b], [&c, &d]));
-            let values: Vec<_> = times.iter().zip(a.iter().zip(&b)).map(|(&t, (&a, &b))| (t, a, b)).collect();
-            Difference::new(name.to_owned(), &values, allowance, &uncertain)
+        let left_out = between_events([first, second], &times);
+        let difference = |name: &str, a: &Known, b: &Known| {
+            Difference::new(name.to_owned(), &times, [a, b], &left_out, allowance)
         };
         let mut differences = Vec::new();
         for name in shared.iter().filter(is_wanted) {
-            let both = |(a, b): (&Run, &Run)| [column(a, name), column(b, name)];
-            let found = difference(name, both((first, second)), finer.map(both));
+            let of = |run: &Run| Known::of(run, |table| column(table, name));
+            let found = difference(name, &of(first)?, &of(second)?);
             // Lagrangians that differ by a constant or a factor give the same motion but different
             // energies.
             let is_aside = name == ENERGY && question.columns.is_empty();
             differences.push(if is_aside { found.aside() } else { found });
         }
         for (label, a, b) in &pairs {
-            let both = |(first, second): (&Run, &Run)| Ok([a.column(first)?, b.column(second)?]);
-            differences.push(difference(label, both((first, second))?, finer.map(both).transpose()?));
+            let of = |run: &Run, formula: &Formula| Known::of(run, |table| formula.column(run, table));
+            differences.push(difference(label, &of(first, a)?, &of(second, b)?));
         }
         let without = |names: &[String], others: &[String]| -> Vec<String> {
             names.iter().filter(|name| !others.contains(name)).cloned().collect()
         };
+        let left_out = left_out.iter().filter(|is_out| **is_out).count();
         Ok(Comparison {
             allowance,
-            rows: times.len(),
+            rows: times.len() - left_out,
+            left_out,
             until: times.last().copied().unwrap_or(first.plan.t_start),
             differences,
             only_first: without(names, others),
@@ -98,34 +99,17 @@ impl Comparison {
         })
     }
 
-    /// Whether nothing differs by more than the allowed amount.
-    pub fn is_same(&self) -> bool {
-        self.ends.is_none() && self.differences.iter().all(Difference::is_allowed)
+    /// What the differences that count, and the ends, say together.
+    pub fn verdict(&self) -> Verdict {
+        let says = |verdict: Verdict| {
+            self.differences.iter().any(|found| found.counts && found.verdict() == verdict)
+        };
+        match (self.ends.is_some() || says(Verdict::Different), says(Verdict::Undecided)) {
+            (true, _) => Verdict::Different,
+            (false, true) => Verdict::Undecided,
+            (false, false) => Verdict::Same,
+        }
     }
-}
-
-/// For each time, twice the largest change up to that time that smaller tolerances make in the two columns together; infinite
-/// from the first row that is missing at smaller tolerances.
-fn uncertain(columns: [&[f64]; 2], finer: [&[f64]; 2]) -> Vec<f64> {
-    let rows = columns[0].len().min(columns[1].len());
-    let change = |i: usize| -> f64 {
-        columns
-            .iter()
-            .zip(&finer)
-            .map(|(column, finer)| match finer.get(i) {
-                Some(finer) if column[i].is_finite() => (column[i] - finer).abs(),
-                Some(_) => 0.0,
-                None => f64::INFINITY,
-            })
-            .sum()
-    };
-    let mut most = 0.0f64;
-    (0..rows)
-        .map(|i| {
-            most = most.max(2.0 * change(i));
-            most
-        })
-        .collect()
 }
 
 /// The expressions that are compared, with their labels.
@@ -136,17 +120,18 @@ fn pairs(question: &Question) -> Result<Vec<(String, Formula, Formula)>, Compare
     question.pairs.iter().map(pair).collect()
 }
 
-fn column(run: &Run, name: &str) -> Vec<f64> {
-    let place = run.table.columns().iter().position(|column| column == name);
-    place.map_or_else(Vec::new, |j| run.table.column(j).collect())
+/// The column of a table, which has it.
+fn column(table: &Table, name: &str) -> Result<Vec<f64>, CompareError> {
+    let place = table.columns().iter().position(|column| column == name);
+    Ok(place.map_or_else(Vec::new, |j| table.column(j).collect()))
 }
 
 /// A phrase that says how the ends of the motions differ, if they do.
 fn ends(first: &Run, second: &Run, allowance: Allowance) -> Option<String> {
     let (a, b) = (first.reached(), second.reached());
     let is_event = |run: &Run| matches!(run.ending, Ending::Event { .. });
-    let allowed = if is_event(first) && is_event(second) { allowance.at(a.abs().max(b.abs())) } else { 0.0 };
-    if is_event(first) == is_event(second) && (a - b).abs() <= allowed {
+    let allowed = || allowance.at(a.abs().max(b.abs())) + ends_allowed([first, second]);
+    if is_event(first) == is_event(second) && (a == b || (is_event(first) && (a - b).abs() <= allowed())) {
         return None;
     }
     Some(format!("A {}, B {}", ending(first), ending(second)))

@@ -80,6 +80,16 @@ pub enum CompareError {
         /// What differs.
         differences: Vec<String>,
     },
+    /// The errors of integration are too large to tell.
+    #[error(
+        "the errors of integration are too large to tell whether the motions are the same: {}; give smaller tolerances or an \
+         earlier end, or say by --tolerance or --absolute how much they may differ",
+        columns.join("; ")
+    )]
+    Undecided {
+        /// What cannot be told, and from when on.
+        columns: Vec<String>,
+    },
 }
 
 impl CompareError {
@@ -87,6 +97,7 @@ impl CompareError {
     pub fn category(&self) -> Category {
         match self {
             CompareError::Different { .. } => Category::Different,
+            CompareError::Undecided { .. } => Category::Undecided,
             _ => Category::Request,
         }
     }

@@ -5,6 +5,7 @@ use pc_expr::parse::{Ast, AstKind, Factor, Sign, parse};
 
 use crate::compare::error::CompareError;
 use crate::motion::run::Run;
+use crate::motion::table::Table;
 
 /// An expression in the columns and parameters of a motion.
 pub(crate) struct Formula {
@@ -20,19 +21,20 @@ impl Formula {
         Ok(Formula { text: text.to_owned(), ast })
     }
 
-    /// The values of the expression in the rows of a run.
+    /// The values of the expression in the rows of a table of a run, its own or one [of its
+    /// accuracy](crate::motion::accuracy::Accuracy).
     ///
     /// # Errors
     /// [`CompareError::UnknownName`], [`CompareError::Derivative`].
-    pub(crate) fn column(&self, run: &Run) -> Result<Vec<f64>, CompareError> {
-        let columns = run.table.columns();
+    pub(crate) fn column(&self, run: &Run, table: &Table) -> Result<Vec<f64>, CompareError> {
+        let columns = table.columns();
         let value = |row: &[f64], name: &str| {
             let column = columns.iter().position(|column| column == name).map(|j| row[j]);
             let parameter =
                 || run.parameters.iter().find(|(known, _)| known == name).map(|&(_, value)| value);
             column.or_else(parameter).or((name == "pi").then_some(std::f64::consts::PI))
         };
-        run.table.rows().map(|row| self.value(&self.ast, run, &|name| value(row, name))).collect()
+        table.rows().map(|row| self.value(&self.ast, run, &|name| value(row, name))).collect()
     }
 
     fn value(&self, ast: &Ast, run: &Run, of: &dyn Fn(&str) -> Option<f64>) -> Result<f64, CompareError> {

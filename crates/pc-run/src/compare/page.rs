@@ -1,13 +1,12 @@
 //! Comparisons in text and JSON.
 
-use pc_print::{columns, one_line};
+use pc_print::{columns, labelled, one_line, short, small, wrapped};
 use serde_json::{Value, json};
 
 use crate::compare::compared::Compared;
 use crate::compare::comparison::{Comparison, ending};
-use crate::compare::difference::Difference;
+use crate::compare::difference::{Difference, SAFETY, Verdict};
 use crate::motion::run::Run;
-use pc_print::{labelled, short, small, wrapped};
 
 const LABEL: usize = 10;
 const WIDTH: usize = 86;
@@ -16,29 +15,24 @@ impl Compared {
     /// The comparison for people.
     pub fn text(&self) -> String {
         let Compared { runs: [first, second], comparison } = self;
-        let side = |run: &Run| {
-            let (form, plan) = (run.plan.form.name(), run.plan.in_words(&run.tolerances));
-            vec![one_line(&run.title).into_owned(), format!("{form}, {plan}, {}", ending(run))]
-        };
         let start = first.plan.t_start;
         let mut text = labelled("A", LABEL, &side(first));
         text += &labelled("B", LABEL, &side(second));
         let until = short(comparison.until, 10);
-        let compared = format!("{} times, {} to {until}", comparison.rows, short(start, 10));
+        let mut compared = format!("{} times, {} to {until}", comparison.rows, short(start, 10));
+        if comparison.left_out > 0 {
+            compared += &format!("; {} at events left out", comparison.left_out);
+        }
         text += &labelled("compared", LABEL, &[compared]);
-        let allowance = comparison.allowance;
-        let again = comparison.differences.iter().any(|found| found.uncertain > 0.0);
-        let errors = if again { ", and twice what smaller tolerances change" } else { "" };
-        let allowed =
-            format!("{:e} of the largest value, and {:e}{errors}", allowance.relative, allowance.absolute);
-        text += &labelled("allowed", LABEL, &[allowed]);
-        let width = comparison.differences.iter().map(|found| columns(&found.name)).max().unwrap_or(0);
-        let lines: Vec<String> = comparison.differences.iter().map(|found| line(found, width)).collect();
-        text += &labelled("apart", LABEL, &lines);
+        text += &labelled("allowed", LABEL, &[allowed(comparison)]);
+        text += &labelled("apart", LABEL, &lines(&comparison.differences));
         text += &labelled("A alone", LABEL, &wrapped(comparison.only_first.iter().cloned(), WIDTH));
         text += &labelled("B alone", LABEL, &wrapped(comparison.only_second.iter().cloned(), WIDTH));
-        let verdict =
-            if comparison.is_same() { "the same motion in what is compared" } else { "two motions" };
+        let verdict = match comparison.verdict() {
+            Verdict::Same => "the same motion in what is compared",
+            Verdict::Different => "two motions",
+            Verdict::Undecided => "undecided: the errors are too large to tell",
+        };
         text += &labelled("verdict", LABEL, &[verdict.to_owned()]);
         text
     }
@@ -53,6 +47,7 @@ impl Compared {
                 "method": run.plan.method.to_string().to_lowercase(),
                 "ending": run.ending.word(),
                 "t_reached": run.reached(),
+                "without_errors": without_errors(run),
             })
         };
         let column = |found: &Difference| {
@@ -61,15 +56,16 @@ impl Compared {
                 "largest": found.largest,
                 "time": found.time,
                 "scale": found.scale,
+                "errors": found.errors,
                 "allowed": found.allowed,
-                "uncertain": found.uncertain,
                 "since": found.since,
+                "untold": found.untold,
                 "counts": found.counts,
-                "same": found.since.is_none(),
+                "verdict": found.verdict().word(),
             })
         };
         json!({
-            "same": comparison.is_same(),
+            "verdict": comparison.verdict().word(),
             "first": side(first),
             "second": side(second),
             "tolerance": comparison.allowance.relative,
@@ -77,6 +73,7 @@ impl Compared {
             "t_start": first.plan.t_start,
             "t_end": comparison.until,
             "times": comparison.rows,
+            "left_out": comparison.left_out,
             "columns": comparison.differences.iter().map(column).collect::<Value>(),
             "only_first": comparison.only_first,
             "only_second": comparison.only_second,
@@ -85,32 +82,92 @@ impl Compared {
     }
 }
 
-fn line(found: &Difference, width: usize) -> String {
-    let pad = " ".repeat(width - columns(&found.name));
-    let largest = format!("{}{pad}  {:<8}", found.name, small(found.largest));
-    let scale = short(found.scale, 4);
-    match found.since {
-        None => format!("{largest}of {scale}"),
-        Some(since) => {
-            let (time, since) = (short(found.time, 6), short(since, 6));
-            let aside = if found.counts { "" } else { ", which does not count" };
-            format!("{largest}of {scale}, at t = {time}; more than is allowed from t = {since} on{aside}")
-        }
-    }
+/// The lines about one of the motions.
+fn side(run: &Run) -> Vec<String> {
+    let (form, plan) = (run.plan.form.name(), run.plan.in_words(&run.tolerances));
+    let how = format!("{form}, {plan}, {}", ending(run));
+    let title = one_line(&run.title).into_owned();
+    [title, how].into_iter().chain(without_errors(run)).collect()
+}
+
+/// Why the errors of later rows of a motion are not known, if they are not.
+fn without_errors(run: &Run) -> Option<String> {
+    let accuracy = run.accuracy.as_ref()?;
+    let why = accuracy.incomplete.as_ref()?;
+    let from = run.table.column(0).nth(accuracy.beside.len())?;
+    Some(format!("its errors are not known from t = {} on: {why}", short(from, 10)))
+}
+
+fn allowed(comparison: &Comparison) -> String {
+    let errors = format!("{SAFETY} times the errors of both");
+    let allowance = comparison.allowance;
+    let parts = [
+        (allowance.relative > 0.0).then(|| format!("{:e} of the largest value", allowance.relative)),
+        (allowance.absolute > 0.0).then(|| format!("{:e}", allowance.absolute)),
+        Some(errors),
+    ];
+    parts.into_iter().flatten().collect::<Vec<String>>().join(", and ")
+}
+
+/// A line for each column, below a line that says what is in them.
+fn lines(differences: &[Difference]) -> Vec<String> {
+    let head = ["", "at most", "of", "at t", "error of A", "error of B", ""].map(str::to_owned);
+    let rows: Vec<[String; 7]> = std::iter::once(head).chain(differences.iter().map(cells)).collect();
+    let width = |j: usize| rows.iter().map(|row| columns(&row[j])).max().unwrap_or(0);
+    let line = |row: &[String; 7]| {
+        let padded = row.iter().enumerate().map(|(j, cell)| {
+            let pad = width(j) - columns(cell);
+            format!("{cell}{}", " ".repeat(pad))
+        });
+        padded.collect::<Vec<String>>().join("  ").trim_end().to_owned()
+    };
+    rows.iter().map(line).collect()
+}
+
+fn cells(found: &Difference) -> [String; 7] {
+    let error = |error: f64| if error.is_finite() { small(error) } else { "not known".to_owned() };
+    let verdict = match (found.verdict(), found.since, found.untold) {
+        (Verdict::Different, Some(since), _) => format!("different from t = {} on", short(since, 6)),
+        (Verdict::Undecided, _, Some(from)) => format!("undecided from t = {} on", short(from, 6)),
+        (verdict, ..) => verdict.word().to_owned(),
+    };
+    let counts = if found.counts || found.verdict() == Verdict::Same { "" } else { ", which does not count" };
+    [
+        found.name.clone(),
+        small(found.largest),
+        short(found.scale, 4),
+        short(found.time, 6),
+        error(found.errors[0]),
+        error(found.errors[1]),
+        format!("{verdict}{counts}"),
+    ]
 }
 
 impl Comparison {
     /// A phrase for each thing that differs.
     pub(crate) fn differing(&self) -> Vec<String> {
         let phrase = |found: &Difference| {
-            format!(
-                "{} by {}, where {} is allowed",
-                found.name,
-                small(found.largest),
-                small(found.allowed + found.uncertain)
-            )
+            let [a, b] = found.errors.map(small);
+            let mut phrase =
+                format!("{} by {}, where the errors are {a} and {b}", found.name, small(found.largest));
+            if found.allowed > 0.0 {
+                phrase += &format!(" and {} is allowed", small(found.allowed));
+            }
+            phrase
         };
-        let too_far = self.differences.iter().filter(|found| !found.is_allowed()).map(phrase);
-        too_far.chain(self.ends.clone()).collect()
+        self.counting(Verdict::Different).map(phrase).chain(self.ends.clone()).collect()
+    }
+
+    /// A phrase for each column that cannot be told.
+    pub(crate) fn untold(&self) -> Vec<String> {
+        let phrase = |found: &Difference| {
+            let from = short(found.untold.unwrap_or(self.until), 6);
+            format!("{} from t = {from} on", found.name)
+        };
+        self.counting(Verdict::Undecided).map(phrase).collect()
+    }
+
+    fn counting(&self, verdict: Verdict) -> impl Iterator<Item = &Difference> {
+        self.differences.iter().filter(move |found| found.counts && found.verdict() == verdict)
     }
 }

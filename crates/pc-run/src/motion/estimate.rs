@@ -86,7 +86,7 @@ impl Estimate {
 }
 
 /// Why a companion did not reach the end of the motion.
-fn why(estimate: &ErrorEstimate, flow: &Flow) -> String {
+pub(crate) fn why(estimate: &ErrorEstimate, flow: &Flow) -> String {
     let t = short(estimate.beside().statistics().current_time, 10);
     match (estimate.failure(), estimate.ending()) {
         (Some(error), _) if error.ended().is_some() => {

@@ -83,7 +83,7 @@ pub(crate) fn table(
     let (last, _) = states.last()?;
     // The same method from the same start makes the same steps, except the last.
     let is_whole = (reached - last).abs() <= 0.01 * (reached - plan.t_start).abs();
-    is_whole.then(|| Table::of_states(flow, &states))
+    is_whole.then(|| Table::of_states(flow, states))
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use pc_solve::{self as solver, Events, Options, Solution, Solve, SolveError, Tra
 
 use crate::error::RunError;
 use crate::files::stream::Stream;
+use crate::motion::accuracy::Accuracy;
 use crate::motion::cache::{Cache, Kept};
 use crate::motion::checkpoints::{CheckpointFiles, Checkpoints};
 use crate::motion::derived::{Derived, Facts};
@@ -41,6 +42,8 @@ pub struct Besides {
     pub remarks: bool,
     /// Whether the table contains the errors of its columns.
     pub estimate: bool,
+    /// Whether the run contains what is known of the accuracy of its rows.
+    pub accuracy: bool,
     /// Checkpoints.
     pub checkpoints: CheckpointFiles,
     /// Where equations are kept for the next run, if anywhere. What is found there was compared with a second
@@ -53,6 +56,17 @@ impl Besides {
     /// curves.
     pub fn shown() -> Besides {
         Besides { verify: true, fine: true, remarks: true, ..Besides::default() }
+    }
+
+    /// Whether the motion has a companion.
+    fn has_companion(&self) -> bool {
+        self.estimate || self.accuracy
+    }
+
+    /// How many more rows are held for each row of a motion with a companion: a longer row beside the one before; those of
+    /// the companion and of rounded states.
+    fn rows_again(&self) -> u64 {
+        2 * u64::from(self.estimate) + 3 * u64::from(self.accuracy)
     }
 }
 
@@ -217,14 +231,14 @@ impl Integration<'_, '_> {
         // Derivatives are known at the rows alone, and a resumed motion is not integrated from its
         // start again.
         let mut again = (self.besides.fine && self.is_plain()).then(|| self.flow.clone());
-        let mut beside = self.besides.estimate.then(|| self.flow.clone());
+        let mut beside = self.besides.has_companion().then(|| self.flow.clone());
         let observer = self.observer;
         let mut streamed = stream.map(|stream| Streamed::new(&self.flow, stream, observer)).transpose()?;
 
         let solved = self.solve(&options, (&mut checkpoints, &mut derivatives, &mut streamed))?;
 
-        let Integration { flow, plan, .. } = &mut self;
-        let estimate = beside
+        let Integration { flow, plan, besides, .. } = &mut self;
+        let companion = beside
             .as_mut()
             .map(|flow| estimate::companion(flow, (plan, &options), &solved.solution, observer));
         let trajectory = &solved.solution.trajectory;
@@ -242,8 +256,14 @@ impl Integration<'_, '_> {
             }
         };
         trajectory.iter().for_each(|(_, y)| note_largest(&mut largest, y));
-        let estimate = estimate
-            .map(|estimate| Estimate::of(&estimate, flow, (&solved.solution, &tolerances), &mut table));
+        let of = (&solved.solution, &tolerances);
+        let accuracy = companion
+            .as_ref()
+            .filter(|_| besides.accuracy)
+            .map(|companion| Accuracy::of(companion, flow, of));
+        let estimate = companion
+            .filter(|_| besides.estimate)
+            .map(|companion| Estimate::of(&companion, flow, of, &mut table));
         let fine = again.as_mut().and_then(|flow| {
             fine::table(flow, (plan, &options), statistics.steps, statistics.current_time, observer)
         });
@@ -271,6 +291,7 @@ impl Integration<'_, '_> {
             table,
             trajectory,
             estimate,
+            accuracy,
             constraints,
             dropped: facts.dropped,
             jumps: facts.jumps,
@@ -313,9 +334,10 @@ impl Integration<'_, '_> {
         stream: Option<&'s mut Stream<'p>>,
     ) -> Result<Option<&'s mut Stream<'p>>, RunError> {
         let Integration { model, flow, plan, besides, .. } = self;
-        let numbers = memory::numbers(flow, plan, besides.checkpoints.path().is_some(), besides.estimate);
+        let numbers = memory::numbers(flow, plan, besides.checkpoints.path().is_some(), besides.rows_again());
         let (rows, limits) = (plan.samples as u64, model.budget().limits());
-        let is_streamed = self.is_plain() && !besides.estimate && memory::is_much(rows, numbers, limits);
+        let is_streamed =
+            self.is_plain() && !besides.has_companion() && memory::is_much(rows, numbers, limits);
         let stream = stream.filter(|_| is_streamed);
         // Of rows that are written at once, only the times are held.
         memory::allow(rows, if stream.is_some() { 1 } else { numbers }, limits)?;

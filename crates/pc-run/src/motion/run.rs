@@ -5,6 +5,7 @@ use std::time::Duration;
 use pc_solve::{Occurrence, Slide, SolveError, Spent, Statistics, Trajectory};
 
 use crate::error::RunError;
+use crate::motion::accuracy::Accuracy;
 use crate::motion::estimate::Estimate;
 use crate::motion::lost::LostIntegral;
 use crate::motion::table::Table;
@@ -37,6 +38,8 @@ pub struct Run {
     pub fine: Option<Table>,
     /// A summary of the global errors, if they were requested.
     pub estimate: Option<Estimate>,
+    /// What is known of the accuracy of the rows, if that was requested.
+    pub accuracy: Option<Accuracy>,
     /// The constraints that are maintained by projection, with the largest residual of each at the output
     /// times.
     pub constraints: Vec<(String, f64)>,

@@ -82,11 +82,11 @@ impl Table {
     }
 
     /// A table with the rows of these states.
-    pub(crate) fn of_states(flow: &mut Flow, states: &[(f64, Vec<f64>)]) -> Table {
+    pub(crate) fn of_states(flow: &mut Flow, states: impl IntoIterator<Item = (f64, Vec<f64>)>) -> Table {
         let mut table = Table::of(flow);
         for (t, y) in states {
-            table.values.push(*t);
-            table.values.extend(flow.row(*t, y));
+            table.values.push(t);
+            table.values.extend(flow.row(t, &y));
         }
         table
     }

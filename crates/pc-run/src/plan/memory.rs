@@ -11,8 +11,9 @@ use crate::plan::Plan;
 /// the current ones, and the bytes to be written.
 const CHECKPOINTED: u64 = 3;
 
-/// How many numbers are held in memory for each row until the table is written.
-pub(crate) fn numbers(flow: &Flow, plan: &Plan, checkpointed: bool, estimated: bool) -> u64 {
+/// How many numbers are held in memory for each row until the table is written; `again` is the number of further rows that are
+/// held for each row of a motion with a companion, and zero without.
+pub(crate) fn numbers(flow: &Flow, plan: &Plan, checkpointed: bool, again: u64) -> u64 {
     let dim = flow.motion.dim() as u64;
     let columns = 1 + flow.columns().len() as u64;
     let copies = if checkpointed { CHECKPOINTED } else { 1 };
@@ -22,8 +23,8 @@ pub(crate) fn numbers(flow: &Flow, plan: &Plan, checkpointed: bool, estimated: b
         0 => 0,
         parameters => parameters * (2 * dim + flow.names.len() as u64) + dim + 4,
     };
-    // Those of the companion, and a longer row beside the one before.
-    let errors = if estimated { 2 + dim + 2 * columns } else { 0 };
+    // The state of the companion, and the rows.
+    let errors = if again > 0 { 2 + dim + again * columns } else { 0 };
     // The requested time; the time and state of the trajectory; the row of the table.
     1 + copies * (1 + dim) + columns + derivatives + errors
 }

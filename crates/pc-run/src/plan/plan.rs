@@ -9,11 +9,6 @@ use crate::error::RunError;
 use crate::plan::Wishes;
 use crate::plan::tolerances::Tolerances;
 
-/// The factor that makes tolerances a hundred times smaller.
-const FINER: f64 = 1e-2;
-/// No relative tolerance is made smaller than this: the rounding error of a few operations.
-const LEAST: f64 = 1e-14;
-
 /// The time span, rows, method and tolerances of a run, and the limits on its steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
@@ -127,13 +122,6 @@ impl Plan {
             Some(length) => options.max_step(length),
             None => options,
         }
-    }
-
-    /// The same plan with tolerances a hundred times smaller than those of a run: the change that this makes
-    /// is the error of integration.
-    pub fn finer(&self, tolerances: &Tolerances) -> Plan {
-        let rtol = (self.rtol * FINER).max(LEAST);
-        Plan { rtol, atol: tolerances.times(FINER), ..self.clone() }
     }
 
     /// A description of the method, the tolerances and the limit on the length of steps.

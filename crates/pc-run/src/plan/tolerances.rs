@@ -31,6 +31,11 @@ impl Tolerances {
         Tolerance::each(self.values.clone())
     }
 
+    /// The tolerances, component by component.
+    pub(crate) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
     /// The largest.
     pub(crate) fn largest(&self) -> f64 {
         self.values.iter().copied().fold(0.0, f64::max)
@@ -39,12 +44,6 @@ impl Tolerances {
     /// The error that each component of a state may have in a step: rtol·|yᵢ| + atolᵢ.
     pub(crate) fn errors(&self, rtol: f64, state: &[f64]) -> Vec<f64> {
         state.iter().zip(&self.values).map(|(value, tolerance)| rtol * value.abs() + tolerance).collect()
-    }
-
-    /// The tolerances multiplied by `part`.
-    pub(crate) fn times(&self, part: f64) -> AbsoluteTolerance {
-        let each = self.names.iter().cloned().zip(self.values.iter().map(|value| part * value));
-        AbsoluteTolerance { all: None, each: each.collect() }
     }
 
     /// A text with the most common tolerance, then the others with the names of their components.

@@ -6,6 +6,7 @@ use pc_expr::{Events, VectorField};
 
 use crate::error::SolveError;
 use crate::estimate::companion::Companion;
+use crate::events::events::Occurrence;
 use crate::integration::integration::Ending;
 use crate::integration::trajectory::Trajectory;
 use crate::settings::options::Options;
@@ -87,6 +88,11 @@ impl ErrorEstimate {
     /// the motion.
     pub fn beside(&self) -> &Trajectory {
         &self.beside.trajectory
+    }
+
+    /// The occurrences of events in the companion, in order.
+    pub fn occurrences(&self) -> &[Occurrence] {
+        &self.beside.occurrences
     }
 
     /// The number of outputs whose errors are known: all outputs of the motion, unless the
