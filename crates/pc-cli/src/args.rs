@@ -2,7 +2,7 @@
 //!
 //! In goes a command line, out come the arguments of a command, and a model. Read `options` first, the options of the commands,
 //! and the `forms` of equations; then the options of a `sweep`, of a page (`report`), of linearizations (`linear`, at the state
-//! that `steady` chooses), of a comparison (`compare`) and of measurements (`bench`), those that say what is `drawn`, those for
+//! that `steady` chooses), of a comparison (`compare`) and of measurements (`bench`), those of every `table`, those that say what is `drawn`, those for
 //! a `checkpoint`, for `models` and for other `tools` around models; `command_line` has all of them with their `examples`, and
 //! `input` turns MODEL into a model and its equations.
 
@@ -21,4 +21,5 @@ pub mod options;
 pub mod report;
 pub mod steady;
 pub mod sweep;
+pub mod table;
 pub mod tools;

@@ -151,6 +151,17 @@ pub enum CliError {
     /// Something wrong with the file of a robot.
     #[error(transparent)]
     Urdf(#[from] UrdfError),
+    /// Standard output for a table that goes to a file alone.
+    #[error("this is written only to a file; name it by -o FILE")]
+    NoFile,
+    /// A format that a terminal cannot show.
+    #[error(
+        "--format {format}: a terminal cannot show this; name a file by -o FILE, or send it to a program or file by a pipe"
+    )]
+    Unreadable {
+        /// The format.
+        format: &'static str,
+    },
     /// An option that has no effect on what a sweep computes for each member.
     #[error("{option} has no effect on what `--of {of}` computes; leave it out")]
     Idle {
@@ -253,6 +264,8 @@ impl CliError {
             | CliError::NothingToDraw { .. }
             | CliError::NoFrame
             | CliError::Idle { .. }
+            | CliError::NoFile
+            | CliError::Unreadable { .. }
             | CliError::Column { .. }
             | CliError::Picture(_) => CliError::USAGE,
         }

@@ -1,5 +1,7 @@
 //! The data of a motion for a report.
 
+use pc_expr::parse::nearest;
+
 /// The kinds of columns of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ColumnKind {
@@ -60,12 +62,18 @@ pub struct Recording {
 
 /// A requested column does not exist.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no column `{name}`; the columns are {}", known.join(", "))]
+#[error("there is no column `{name}`;{} the columns are {}", meant(name, known), known.join(", "))]
 pub struct UnknownColumn {
     /// The requested name.
     pub name: String,
     /// The known names.
     pub known: Vec<String>,
+}
+
+/// A question whether another name is meant, if one is near.
+fn meant(name: &str, known: &[String]) -> String {
+    let nearest = nearest(name, known.iter().map(String::as_str));
+    nearest.map_or_else(String::new, |nearest| format!(" did you mean `{nearest}`?"))
 }
 
 impl Samples {

@@ -2,7 +2,7 @@
 
 use pc_model::{ModelError, UnknownParameter, UnknownStart};
 use pc_print::{short, small};
-use pc_report::ReportError;
+use pc_report::{ReportError, UnknownColumn};
 use pc_solve::{Code, SolveError, Spent};
 use pc_verify::VerifyError;
 
@@ -78,6 +78,9 @@ pub enum RunError {
     /// Motions differ, or cannot be compared.
     #[error(transparent)]
     Compare(#[from] CompareError),
+    /// A column that is to be written does not exist.
+    #[error("--columns: {0}")]
+    Column(#[from] UnknownColumn),
     /// The integration could not continue.
     #[error("the integration failed{}", at(.cause, names))]
     Integration {
@@ -136,6 +139,7 @@ impl RunError {
             RunError::Integration { .. } | RunError::Lost(_) => Category::Failed,
             RunError::Interrupted { .. } => Category::Interrupted,
             RunError::Sensitivities(_)
+            | RunError::Column(_)
             | RunError::Tolerance(_)
             | RunError::NoEnd { .. }
             | RunError::EndIsStart { .. }

@@ -1,6 +1,5 @@
 //! Arguments of `pc compare`.
 
-use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
@@ -11,7 +10,8 @@ use pc_run::compare::difference::Allowance;
 
 use crate::args::forms::run_form;
 use crate::args::options;
-use crate::args::options::{Format, IntegrationArguments, ModelArguments, Setting};
+use crate::args::options::{IntegrationArguments, ModelArguments, Setting};
+use crate::args::table::{ColumnArguments, OutputArguments, TableArguments};
 
 /// Arguments of `pc compare`.
 #[derive(Clone, Debug, Args)]
@@ -44,15 +44,15 @@ pub struct CompareArguments {
     /// Difference allowed in addition to errors of integration, whatever the size of the values
     #[arg(long, value_name = "D", default_value = "0", allow_hyphen_values = true, value_parser = options::not_negative)]
     pub absolute: f64,
-    /// Compare only these columns, separated by commas [default: all that both have]
-    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
-    pub columns: Vec<String>,
+    /// Which columns are compared.
+    #[command(flatten)]
+    pub columns: ColumnArguments,
+    /// Further outputs.
+    #[command(flatten)]
+    pub outputs: OutputArguments,
     /// Also compare an expression in the columns and parameters of A with one in the columns and parameters of B (repeatable)
     #[arg(long, value_name = "EXPR=EXPR", value_parser = options::definition)]
     pub map: Vec<Setting>,
-    /// How to print
-    #[arg(long, default_value = "text")]
-    pub format: Format,
     /// Memory limit for the expressions of the equations, and separately for the rows of a motion, such as
     /// 500M or 8G
     #[arg(long, value_name = "BYTES", value_parser = options::bytes, default_value = "4G")]
@@ -60,9 +60,9 @@ pub struct CompareArguments {
     /// Time limit in seconds for all work on each model [default: none]
     #[arg(long, value_name = "SECONDS", value_parser = options::seconds)]
     pub limit_time: Option<Duration>,
-    /// Write to FILE instead of standard output
-    #[arg(short, long, value_name = "FILE")]
-    pub output: Option<PathBuf>,
+    /// The table.
+    #[command(flatten)]
+    pub table: TableArguments,
 }
 
 impl CompareArguments {
@@ -92,7 +92,7 @@ impl CompareArguments {
     pub(crate) fn question(&self) -> Question {
         Question {
             allowance: Allowance { relative: self.tolerance, absolute: self.absolute },
-            columns: self.columns.clone(),
+            columns: self.columns.names(),
             pairs: self.map.iter().map(|map| (map.name.clone(), map.value.clone())).collect(),
         }
     }

@@ -6,10 +6,6 @@ use pc_report::picture::Wanted;
 /// Which parts of a motion are drawn, and how.
 #[derive(Clone, Debug, Default, Args)]
 pub struct DrawnArguments {
-    /// With --plot: draw these columns over time, separated by commas, instead of all; drift(NAME) is the relative drift of
-    /// NAME and, with --estimate, error(NAME) its error
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "plot")]
-    pub columns: Vec<String>,
     /// With --plot: draw column Y against column X, as a path or a phase portrait; components of a vector, such as x and y, are
     /// drawn to the same scale (repeatable)
     #[arg(long, value_name = "X,Y", value_parser = pair, requires = "plot")]
@@ -20,10 +16,10 @@ pub struct DrawnArguments {
 }
 
 impl DrawnArguments {
-    /// What is drawn, in the form that `pc_report` takes.
-    pub fn wanted(&self) -> Wanted {
-        let trimmed = |names: &[String]| names.iter().map(|name| name.trim().to_owned()).collect();
-        Wanted { columns: trimmed(&self.columns), pairs: self.xy.clone(), wrapped: trimmed(&self.wrap) }
+    /// What is drawn, with these columns over time, in the form that `pc_report` takes.
+    pub fn wanted(&self, columns: Vec<String>) -> Wanted {
+        let wrapped = self.wrap.iter().map(|name| name.trim().to_owned()).collect();
+        Wanted { columns, pairs: self.xy.clone(), wrapped }
     }
 }
 

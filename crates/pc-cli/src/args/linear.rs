@@ -8,17 +8,7 @@ use pc_run::sweep::values::Vary;
 
 use crate::args::options::{self, ModelArguments, VerifyArguments};
 use crate::args::steady::StateArguments;
-
-/// How a table of matrices is printed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum MatrixFormat {
-    /// For people.
-    Text,
-    /// For programs.
-    Json,
-    /// One line per number.
-    Csv,
-}
+use crate::args::table::{OutputArguments, TableArguments};
 
 /// The axes of the complex plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -65,12 +55,12 @@ pub struct LinearizeArguments {
     /// Follow the eigenvalues over N evenly spaced values of a parameter or start value, both ends included: the root locus
     #[arg(long, value_name = "NAME=FROM:TO:N")]
     pub vary: Option<Vary>,
-    /// How to print
-    #[arg(long, value_name = "FORMAT", conflicts_with = "output")]
-    pub format: Option<MatrixFormat>,
-    /// Write the matrices, or with --vary the table of eigenvalues, to FILE.json, FILE.csv, FILE.npz or FILE.mat
-    #[arg(short, long, value_name = "FILE")]
-    pub output: Option<PathBuf>,
+    /// Further outputs h.
+    #[command(flatten)]
+    pub outputs: OutputArguments,
+    /// The matrices, or with --vary the table of eigenvalues.
+    #[command(flatten)]
+    pub table: TableArguments,
     /// With --vary: draw the eigenvalues in the complex plane, and their real and imaginary parts, to FILE.svg, FILE.png or FILE.pdf
     #[arg(long, value_name = "FILE", requires = "vary")]
     pub plot: Option<PathBuf>,
@@ -103,12 +93,12 @@ pub struct EquilibriaArguments {
     /// Number of points from which Newton's method starts
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = starts)]
     pub starts: usize,
-    /// How to print
-    #[arg(long, default_value = "text")]
-    pub format: MatrixFormat,
-    /// Write the list to FILE.json or FILE.csv instead
-    #[arg(short, long, value_name = "FILE", conflicts_with = "format")]
-    pub output: Option<PathBuf>,
+    /// Further outputs.
+    #[command(flatten)]
+    pub outputs: OutputArguments,
+    /// The list.
+    #[command(flatten)]
+    pub table: TableArguments,
     /// Verification.
     #[command(flatten)]
     pub verify: VerifyArguments,

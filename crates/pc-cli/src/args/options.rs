@@ -13,6 +13,7 @@ use pc_solve::Method;
 use crate::args::checkpoint::CheckpointArguments;
 use crate::args::drawn::DrawnArguments;
 use crate::args::forms::{emit_form, form, method, run_form};
+use crate::args::table::{ColumnArguments, OutputArguments, TableArguments};
 
 /// The model, the values of its parameters, and its start.
 #[derive(Clone, Debug, Args)]
@@ -272,12 +273,9 @@ pub struct RunArguments {
     /// Keep an integral, or energy, at its start value by projection after each step (repeatable)
     #[arg(long, value_name = "NAME")]
     pub project: Vec<String>,
-    /// More columns: the reactions of the constraints. λ_NAME is the reaction for the expression as it is written; models with
-    /// bodies also have forces F_NAME_BODY in space axes at the body's position and torques N_NAME_BODY in body axes,
-    /// as far as virtual work determines them: a component perpendicular to every possible motion is given as 0, whatever holds
-    /// the body
-    #[arg(long, value_name = "OUTPUTS")]
-    pub outputs: Option<Outputs>,
+    /// Further outputs.
+    #[command(flatten)]
+    pub outputs: OutputArguments,
     /// More columns: the derivatives ∂x/∂p of coordinates, quasi-velocities and first-order states with respect to these
     /// parameters, separated by commas; a start that depends on them, and events, are taken into account
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
@@ -290,9 +288,12 @@ pub struct RunArguments {
     /// Do not compare the motion at its start and at its end with a second derivation
     #[arg(long)]
     pub no_verify: bool,
-    /// Write the table to FILE.csv, FILE.json, FILE.npz or FILE.parquet instead of standard output
-    #[arg(short, long, value_name = "FILE")]
-    pub output: Option<PathBuf>,
+    /// The table.
+    #[command(flatten)]
+    pub table: TableArguments,
+    /// Its columns.
+    #[command(flatten)]
+    pub columns: ColumnArguments,
     /// Draw the motion into FILE.svg, FILE.png or FILE.pdf: curves of similar scale share axes, with events and the drift of
     /// integrals; the curves also follow the motion between the rows
     #[arg(long, value_name = "FILE")]
@@ -454,13 +455,6 @@ impl From<Page> for pc_print::Page {
             Page::Json => pc_print::Page::Json,
         }
     }
-}
-
-/// Which additional columns a table has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Outputs {
-    /// The reactions of the constraints.
-    Reactions,
 }
 
 pub(crate) fn definition(text: &str) -> Result<Setting, String> {

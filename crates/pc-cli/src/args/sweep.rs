@@ -19,11 +19,13 @@ use crate::args::forms::{by_word, run_form};
 use crate::args::options;
 use crate::args::options::{IntegrationArguments, ModelArguments};
 use crate::args::steady::StateArguments;
+use crate::args::table::{ColumnArguments, OutputArguments, TableArguments};
 
 /// Arguments of `pc sweep`.
 #[derive(Clone, Debug, Args)]
 #[command(
     group(ArgGroup::new("varied").args(["vary", "random"]).required(true)),
+    group(ArgGroup::new("file").args(["output"]).required(true)),
     after_help = format!("{}\n\n\
                   Members of a grid are all combinations of the values, the last --vary changing fastest. \
                   lognormal(m,s) is exp of normal(m,s).\n\
@@ -82,9 +84,15 @@ pub struct SweepArguments {
     /// With --of linearize: the state.
     #[command(flatten)]
     pub state: StateArguments,
-    /// Write the table to FILE.csv, FILE.json, FILE.npz or FILE.parquet
-    #[arg(short, long, value_name = "FILE")]
-    pub output: PathBuf,
+    /// Further outputs.
+    #[command(flatten)]
+    pub outputs: OutputArguments,
+    /// The table.
+    #[command(flatten)]
+    pub table: TableArguments,
+    /// Its columns.
+    #[command(flatten)]
+    pub columns: ColumnArguments,
     /// Compute only the members I, I + N, … and keep them in FILE.shard-I-of-N; `pc merge` makes one table from all N shards
     #[arg(long, value_name = "I/N", value_parser = Shard::parse, conflicts_with = "plot")]
     pub shard: Option<Shard>,
@@ -92,9 +100,6 @@ pub struct SweepArguments {
     /// them, histograms with quantiles for randomly drawn members; with --rows, curves over time
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
-    /// With --plot: draw these columns, separated by commas
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "plot")]
-    pub columns: Vec<String>,
     /// Do not compare the first member, one in the middle and the last with a second derivation
     #[arg(long)]
     pub no_verify: bool,
@@ -102,7 +107,8 @@ pub struct SweepArguments {
 
 /// Arguments of `pc merge`.
 #[derive(Clone, Debug, Args)]
-#[command(after_help = "Examples:\n  \
+#[command(group(ArgGroup::new("file").args(["output"]).required(true)),
+          after_help = "Examples:\n  \
                         pc merge sweep.csv.shard-* -o sweep.csv    # of four jobs\n  \
                         pc merge part1/cloud.npz.shard-* part2/cloud.npz.shard-* -o cloud.npz    # of several machines\n\
                         The jobs were `pc sweep MODEL … -o sweep.csv --shard 1/4` to `4/4`. The table has the bytes of the same sweep by one process. A shard that was killed goes on where it was by \
@@ -112,15 +118,15 @@ pub struct MergeArguments {
     /// The files that `pc sweep --shard` has written, in any order
     #[arg(value_name = "SHARD", required = true)]
     pub shards: Vec<PathBuf>,
-    /// Write the table to FILE.csv, FILE.json, FILE.npz or FILE.parquet
-    #[arg(short, long, value_name = "FILE")]
-    pub output: PathBuf,
+    /// The table.
+    #[command(flatten)]
+    pub table: TableArguments,
+    /// Its columns.
+    #[command(flatten)]
+    pub columns: ColumnArguments,
     /// Draw the table, as `pc sweep --plot` does
     #[arg(long, value_name = "FILE")]
     pub plot: Option<PathBuf>,
-    /// With --plot: draw these columns, separated by commas
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', requires = "plot")]
-    pub columns: Vec<String>,
 }
 
 impl SweepArguments {
@@ -139,6 +145,7 @@ impl SweepArguments {
             ("--method", method.is_some()),
             ("--form", self.form.is_some()),
             ("--project", !self.project.is_empty()),
+            ("--outputs", self.outputs.outputs.is_some()),
         ];
         let of_linearizations = [
             ("--at", self.state.at.is_some()),

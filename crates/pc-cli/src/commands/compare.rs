@@ -1,16 +1,16 @@
 //! `pc compare`: whether two models, or two forms of one, have the same motion.
 
 use pc_model::{Model, UnknownValue};
-use pc_print::{visible, visible_json};
 use pc_run::Plan;
 use pc_run::compare::compared::Compared;
 use pc_run::compare::error::CompareError;
+use pc_run::table::format::Format;
 
 use crate::args::compare::CompareArguments;
 use crate::args::input;
-use crate::args::options::{Format, Setting};
+use crate::args::options::Setting;
 use crate::error::CliError;
-use crate::output::text::TextOutput;
+use crate::output::table::TablePlace;
 use crate::terminal::observer::Terminal;
 
 /// Integrates both motions, and prints how far they are apart.
@@ -19,9 +19,9 @@ use crate::terminal::observer::Terminal;
 /// [`CompareError::Different`] where they are not the same; the failure of a motion, after the
 /// times that it reached are compared.
 pub fn command(arguments: &CompareArguments) -> Result<(), CliError> {
-    let place = TextOutput::at(arguments.output.as_deref())?;
+    let place = TablePlace::of(&arguments.table, Format::OF_COMPARISONS)?;
     let (first, second) = models(arguments)?;
-    let output = arguments.output.as_deref();
+    let output = arguments.table.output.as_deref();
     input::keep_apart(&arguments.model(&arguments.first), &first, [output])?;
     if let Some(name) = &arguments.second {
         input::keep_apart(&arguments.model(name), &second, [output])?;
@@ -35,10 +35,7 @@ pub fn command(arguments: &CompareArguments) -> Result<(), CliError> {
     }
     let question = arguments.question();
     let compared = Compared::of([&first, &second], [&wishes[0], &wishes[1]], &question, &Terminal)?;
-    place.write(|out| match arguments.format {
-        Format::Text => write!(out, "{}", visible(&compared.text())),
-        Format::Json => writeln!(out, "{}", visible_json(&compared.json())),
-    })?;
+    place.write(&compared, "comparison")?;
     Ok(compared.outcome()?)
 }
 
@@ -71,5 +68,6 @@ fn models(arguments: &CompareArguments) -> Result<(Model, Model), CliError> {
     };
     input::set(&mut first, &known(&of_first))?;
     input::set(&mut second, &known(&of_second))?;
+    arguments.outputs.apply([&mut first, &mut second]);
     Ok((first, second))
 }

@@ -25,10 +25,10 @@ pub fn command(arguments: &ModelsArguments) -> Result<(), CliError> {
         return print(|out| out.write_all(model.text.as_bytes()));
     }
     if arguments.algebras {
-        return print(algebras);
+        return print(|out| algebras(out));
     }
     if arguments.tags {
-        return print(tags);
+        return print(|out| tags(out));
     }
     if let Some(name) = arguments.tag.iter().find(|name| TAGS.iter().all(|tag| tag.name != **name)) {
         let nearest = nearest(name, TAGS.iter().map(|tag| tag.name));

@@ -10,13 +10,14 @@ use pc_run::motion::integrate::Besides;
 use pc_run::motion::run::Run;
 use pc_run::motion::summary;
 use pc_run::table::file::TableFile;
+use pc_run::table::format::Format;
 
 use crate::args::checkpoint::CheckpointArguments;
 use crate::args::input;
-use crate::args::options::{Outputs, RunArguments};
+use crate::args::options::RunArguments;
 use crate::error::CliError;
-use crate::output::destination::{Destination, table};
-use crate::output::standard_output::print_or_keep;
+use crate::output::destination::Destination;
+use crate::output::table::TablePlace;
 use crate::terminal::observer::Terminal;
 use crate::terminal::text;
 
@@ -25,20 +26,18 @@ use crate::terminal::text;
 /// # Errors
 /// [`CliError`]; the motion has been written as far as it was reached.
 pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
-    let file = table(arguments.output.as_deref())?;
-    let picture =
-        Destination::plot(arguments.plot.as_deref())?.map(|place| (place, arguments.drawn.wanted()));
+    let place = TablePlace::of(&arguments.table, Format::OF_TABLES)?;
+    let (file, columns) = (place.file(), arguments.columns.names());
+    let picture = Destination::plot(arguments.plot.as_deref())?
+        .map(|place| (place, arguments.drawn.wanted(columns.clone())));
     let is_hamel = arguments.form == Some(Variables::Given);
     let mut model = input::open_in(&arguments.model, &arguments.velocities, is_hamel)?;
-    let results = [arguments.output.as_deref(), arguments.plot.as_deref()];
+    let results = [arguments.table.output.as_deref(), arguments.plot.as_deref()];
     let CheckpointArguments { checkpoint, resume, .. } = &arguments.checkpoints;
     input::keep_apart(&arguments.model, &model, results.into_iter().chain([checkpoint.as_deref()]))?;
     // The checkpoint from which a run continues may be replaced by later ones, but not by results.
     keep_apart(resume.as_deref(), results.into_iter().filter_map(target::file))?;
-    model.observe_reactions(arguments.outputs == Some(Outputs::Reactions));
-    if arguments.outputs.is_some() && model.document().constraints.is_empty() {
-        text::say(format_args!("note: there are no constraints, and so no reactions\n"));
-    }
+    arguments.outputs.apply([&mut model]);
     model.differentiate_by_parameters(!arguments.sensitivities.is_empty());
     for name in &arguments.project {
         model.keep(name).map_err(CliError::UnknownIntegral)?;
@@ -47,18 +46,19 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
         verify: !arguments.no_verify,
         fine: picture.is_some(),
         remarks: true,
+        columns,
         estimate: arguments.estimate,
         checkpoints: arguments.checkpoints.files(),
         cache: std::env::var_os("PC_CACHE_DIR").filter(|directory| !directory.is_empty()).map(Cache::new),
         ..Besides::default()
     };
     // A picture needs all rows.
-    let mut stream = file.as_ref().and_then(TableFile::stream).filter(|_| picture.is_none());
+    let mut stream = file.and_then(TableFile::stream).filter(|_| picture.is_none());
     let run = Run::of(&model, &arguments.wishes(), &besides, stream.as_mut(), &Terminal)?;
-    let so_far = file.as_ref().filter(|_| run.is_interrupted()).and_then(TableFile::so_far);
-    let file = so_far.as_ref().or(file.as_ref());
+    let so_far = file.filter(|_| run.is_interrupted()).and_then(TableFile::so_far).map(TablePlace::File);
+    let place = so_far.as_ref().unwrap_or(&place);
     let picture = picture.map(|(place, wanted)| (place.for_run(&run), wanted));
-    let written = write(&run, stream.filter(Stream::is_begun), file, picture.as_ref());
+    let written = write(&run, stream.filter(Stream::is_begun), place, picture.as_ref());
     text::say(format_args!("{}", summary::text(&run)));
     match (run.outcome(), written) {
         (Err(ending), Err(error)) => {
@@ -72,15 +72,14 @@ pub fn command(arguments: &RunArguments) -> Result<(), CliError> {
 fn write(
     run: &Run,
     stream: Option<Stream<'_>>,
-    file: Option<&TableFile>,
+    place: &TablePlace,
     picture: Option<&(Destination, Wanted)>,
 ) -> Result<(), CliError> {
-    match (stream, file) {
-        (Some(stream), Some(file)) => file.end(stream)?,
-        (None, Some(file)) => run.write(file)?,
-        (_, None) => print_or_keep("motion.csv", |out| run.write_csv(out))?,
+    match (stream, place) {
+        (Some(stream), TablePlace::File(file)) => file.end(stream)?,
+        _ => place.write(run, "motion")?,
     }
-    if let Some(file) = file {
+    if let Some(file) = place.file() {
         text::say_so_far(file.path(), file.instead_of());
     }
     match picture {

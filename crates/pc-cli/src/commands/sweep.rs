@@ -7,12 +7,13 @@ use pc_run::sweep::journal::{Records, Tally};
 use pc_run::sweep::sweep_columns::SweepColumns;
 use pc_run::sweep::{Sweep, Swept};
 use pc_run::sweep::{output, picture};
-use pc_run::table::file::{Format, TableFile};
+use pc_run::table::format::Format;
 
 use crate::args::input;
 use crate::args::sweep::SweepArguments;
 use crate::error::CliError;
 use crate::output::destination::Destination;
+use crate::output::table::regular_file;
 use crate::terminal::observer::Terminal;
 use crate::terminal::text;
 
@@ -21,17 +22,15 @@ use crate::terminal::text;
 /// # Errors
 /// [`CliError`]; finished members are kept.
 pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
-    let file = TableFile::regular(&arguments.output, Format::OF_TABLES)?;
+    let file = regular_file(&arguments.table, Format::OF_TABLES)?;
+    let columns = arguments.columns.names();
     let place = Destination::plot(arguments.plot.as_deref())?;
     if let Some(option) = arguments.idle() {
         return Err(CliError::Idle { option, of: arguments.of.word() });
     }
     let mut model = input::open(&arguments.model)?;
-    input::keep_apart(
-        &arguments.model,
-        &model,
-        [Some(arguments.output.as_path()), arguments.plot.as_deref()],
-    )?;
+    input::keep_apart(&arguments.model, &model, [Some(file.path()), arguments.plot.as_deref()])?;
+    arguments.outputs.apply([&mut model]);
     for name in &arguments.project {
         model.keep(name).map_err(CliError::UnknownIntegral)?;
     }
@@ -40,8 +39,9 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
     if !arguments.no_verify {
         sweep.vouched()?;
     }
+    let written = sweep.written(&columns)?;
     if place.is_some() {
-        sweep.drawable(&arguments.columns)?;
+        sweep.drawable(&columns)?;
     }
     let mut journal = sweep.journal(file.path(), arguments.shard)?;
     let swept = sweep.run(&mut journal, &Terminal)?;
@@ -52,10 +52,10 @@ pub fn command(arguments: &SweepArguments) -> Result<(), CliError> {
         text::say(format_args!("{said}"));
         return Ok(());
     }
-    output::write(&file, sweep.title(), sweep.sweep_columns(), &journal)?;
+    output::write(&file, sweep.title(), (sweep.sweep_columns(), &written), &journal)?;
     let drawn = place.map(|place| {
         let said = (sweep.title(), sweep.units());
-        draw(&place, said, (sweep.sweep_columns(), &journal), &arguments.columns, sweep.is_random())
+        draw(&place, said, (sweep.sweep_columns(), &journal), &columns, sweep.is_random())
     });
     journal.remove()?;
     text::say(format_args!("{said}"));

@@ -9,19 +9,10 @@ use pc_run::files::error::FileError;
 use pc_run::files::target;
 use pc_run::files::target::Target;
 use pc_run::motion::run::Run;
-use pc_run::table::file::{Format, TableFile};
 
 use crate::error::CliError;
 use crate::output::standard_output;
 use crate::terminal::text;
-
-/// The file of the table of a motion; none for standard output, also as `-`.
-///
-/// # Errors
-/// [`FileError::UnknownExtension`]; [`FileError::Place`] where no file can be.
-pub fn table(path: Option<&Path>) -> Result<Option<TableFile>, FileError> {
-    target::file(path).map(|path| TableFile::new(path, Format::OF_TABLES)).transpose()
-}
 
 /// How a page or a picture is encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,7 +41,7 @@ impl Destination {
     /// The place of the picture, if one is wanted.
     ///
     /// # Errors
-    /// As for [`table`].
+    /// [`FileError::UnknownExtension`]; [`FileError::Place`] where no file can be.
     pub fn plot(path: Option<&Path>) -> Result<Option<Destination>, CliError> {
         let encodings = [("svg", Encoding::Svg), ("png", Encoding::Png), ("pdf", Encoding::Pdf)];
         path.map(|path| Destination::file("--plot", path, &encodings, ".svg, .png or .pdf")).transpose()
@@ -59,7 +50,7 @@ impl Destination {
     /// The place of a page: the file, else, as for `-`, standard output.
     ///
     /// # Errors
-    /// As for [`table`].
+    /// As for [`plot`](Destination::plot).
     pub fn page(path: Option<&Path>) -> Result<Destination, CliError> {
         let Some(path) = target::file(path) else {
             return Ok(Destination { encoding: Encoding::Html, place: None });
@@ -70,7 +61,7 @@ impl Destination {
     /// The place of a motion that is shown: a page, a film, or a picture of one frame; else, as for `-`, standard output.
     ///
     /// # Errors
-    /// As for [`table`].
+    /// As for [`plot`](Destination::plot).
     pub fn shown(path: Option<&Path>) -> Result<Destination, CliError> {
         let Some(path) = target::file(path) else { return Destination::page(path) };
         let encodings = [

@@ -12,14 +12,14 @@ use crate::error::{CliError, STANDARD_OUTPUT};
 ///
 /// # Errors
 /// [`FileError::Write`], which needs no message where the reader has gone away (`pc run … | head`).
-pub fn print(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), CliError> {
+pub fn print(write: impl FnOnce(&mut (dyn Write + Send)) -> io::Result<()>) -> Result<(), CliError> {
     attempt(write).map_err(error)
 }
 
 /// Writes a result to standard output, or else to a file in the directory of temporary files.
 pub(crate) fn print_or_keep(
     name: &str,
-    write: impl Fn(&mut dyn Write) -> io::Result<()>,
+    write: impl Fn(&mut (dyn Write + Send)) -> io::Result<()>,
 ) -> Result<(), CliError> {
     attempt(&write).map_err(|source| {
         let gone = source.kind() == ErrorKind::BrokenPipe;
@@ -28,8 +28,8 @@ pub(crate) fn print_or_keep(
     })
 }
 
-fn attempt(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let mut out = io::BufWriter::new(io::stdout().lock());
+fn attempt(write: impl FnOnce(&mut (dyn Write + Send)) -> io::Result<()>) -> io::Result<()> {
+    let mut out = io::BufWriter::new(io::stdout());
     let written = write(&mut out).and_then(|()| out.flush());
     drop(out.into_parts()); // what could not be written is not tried again
     written

@@ -27,7 +27,10 @@ impl TextOutput {
     ///
     /// # Errors
     /// [`FileError::Write`]
-    pub(crate) fn write(&self, text: impl Fn(&mut dyn Write) -> io::Result<()>) -> Result<(), CliError> {
+    pub(crate) fn write(
+        &self,
+        text: impl Fn(&mut (dyn Write + Send)) -> io::Result<()>,
+    ) -> Result<(), CliError> {
         match &self.0 {
             None => print(text),
             Some(place) => place

@@ -67,6 +67,7 @@ mod statics;
 mod sweep;
 mod sweep_of;
 mod sweeps;
+mod tables;
 mod theory;
 mod time_limits;
 mod tolerances;

@@ -168,11 +168,11 @@ fn a_small_coordinate_has_its_own_panel() {
     let unknown = place.pc(&["run", "m.toml", "--plot", "a.svg", "--columns", "x,q"]);
     assert_eq!(unknown.status.code(), Some(2));
     assert!(
-        said(&unknown).contains("there is no column `q`; the columns are x, y, x', y', energy"),
+        said(&unknown).contains("--columns: there is no column `q`; the columns are t, x, y, x', y', energy"),
         "{}",
         said(&unknown)
     );
-    for (option, value) in [("--xy", "x"), ("--xy", "x,y,z"), ("--columns", "x")] {
+    for (option, value) in [("--xy", "x"), ("--xy", "x,y,z"), ("--wrap", "x")] {
         let wrong = place.pc(&["run", "m.toml", option, value]);
         assert_eq!(wrong.status.code(), Some(2), "{option} {value}");
     }

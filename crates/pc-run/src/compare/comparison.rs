@@ -65,13 +65,13 @@ impl Comparison {
         if question.columns.is_empty() && pairs.is_empty() && shared.iter().all(|name| name == ENERGY) {
             return Err(CompareError::NothingShared { first: names.to_vec(), second: others.to_vec() });
         }
-        let is_wanted = |name: &&String| question.columns.is_empty() || question.columns.contains(name);
+        let wanted = if question.columns.is_empty() { &shared } else { &question.columns };
         let left_out = between_events([first, second], &times);
         let difference = |name: &str, a: &Known, b: &Known| {
             Difference::new(name.to_owned(), &times, [a, b], &left_out, allowance)
         };
         let mut differences = Vec::new();
-        for name in shared.iter().filter(is_wanted) {
+        for name in wanted {
             let of = |run: &Run| Known::of(run, |table| column(table, name));
             let found = difference(name, &of(first)?, &of(second)?);
             // Lagrangians that differ by a constant or a factor give the same motion but different

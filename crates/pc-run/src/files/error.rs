@@ -20,6 +20,14 @@ pub enum FileError {
         /// The extensions that are accepted.
         expected: String,
     },
+    /// A format that a result does not have.
+    #[error("--format {format}: this is written as {expected}")]
+    Format {
+        /// The name of the format.
+        format: &'static str,
+        /// The formats that it has.
+        expected: String,
+    },
     /// A file that cannot be written, as was found before anything was computed.
     #[error("cannot write {}; nothing was computed", path.display())]
     Place {
@@ -77,6 +85,7 @@ impl FileError {
     pub fn category(&self) -> Category {
         match self {
             FileError::UnknownExtension { .. }
+            | FileError::Format { .. }
             | FileError::Place { .. }
             | FileError::AlsoRead { .. }
             | FileError::Twice { .. } => Category::Request,

@@ -35,7 +35,10 @@ impl<'p> Stream<'p> {
     ///
     /// # Errors
     /// [`FileError::Write`]
-    pub(crate) fn begin(&mut self, columns: &[String]) -> Result<(), FileError> {
+    pub(crate) fn begin<'n>(
+        &mut self,
+        columns: impl IntoIterator<Item = &'n String>,
+    ) -> Result<(), FileError> {
         let begun = partial::make(&self.place.file).and_then(|made| {
             let mut out = BufWriter::with_capacity(BLOCK, made);
             writeln!(out, "{}", csv::header(columns))?;
@@ -51,9 +54,9 @@ impl<'p> Stream<'p> {
     }
 
     /// Writes a row; returns a break if this fails.
-    pub(crate) fn row(&mut self, numbers: &[f64]) -> ControlFlow<()> {
+    pub(crate) fn row(&mut self, numbers: impl IntoIterator<Item = f64>) -> ControlFlow<()> {
         let Some(out) = &mut self.out else { return ControlFlow::Break(()) };
-        if let Err(error) = csv::row(numbers.iter().copied().map(Cell::Number), out) {
+        if let Err(error) = csv::row(numbers.into_iter().map(Cell::Number), out) {
             self.error = Some(error);
             return ControlFlow::Break(());
         }

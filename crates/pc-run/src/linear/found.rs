@@ -1,5 +1,6 @@
 //! The equilibria in a box, for people and for programs.
 
+use std::io::{self, Seek, Write};
 use std::ops::Range;
 
 use pc_analysis::{Eigenvalue, Equilibria, EquilibriumSearch, FoundEquilibrium, Linearization};
@@ -8,7 +9,6 @@ use pc_print::{eigenvalues_in_words, labelled, one_line, short, stability_in_wor
 use serde_json::{Value, json};
 
 use crate::error::RunError;
-use crate::files::error::FileError;
 use crate::linear::compared;
 use crate::linear::error::LinearError;
 use crate::linear::json::map;
@@ -17,7 +17,8 @@ use crate::linear::output::Contents;
 use crate::linear::text::{in_digits, rounded};
 use crate::observer::Observer;
 use crate::table::csv::{field, header};
-use crate::table::file::TableFile;
+use crate::table::format::Format;
+use crate::table::tabulated::Tabulated;
 
 /// The width at which a line is wrapped, not counting its number.
 const WIDTH: usize = 92;
@@ -112,13 +113,22 @@ impl Found {
     pub fn csv(&self) -> String {
         csv(&self.names, &self.equilibria)
     }
+}
 
-    /// Writes the equilibria to a file.
-    ///
-    /// # Errors
-    /// [`FileError::Write`], which says where the result was kept.
-    pub fn write(&self, file: &TableFile) -> Result<(), FileError> {
-        Contents { json: &self.json(), csv: &self.csv(), arrays: &[], texts: &[] }.write(file)
+impl Tabulated for Found {
+    fn formats(&self) -> &'static [Format] {
+        Format::OF_LISTS
+    }
+
+    fn write_as(&self, format: Format, out: &mut (impl Write + Seek + Send)) -> io::Result<()> {
+        let contents = Contents {
+            text: &|| self.text(),
+            json: &|| self.json(),
+            csv: &|| self.csv(),
+            arrays: &Vec::new,
+            texts: &[],
+        };
+        contents.write_as(format, out)
     }
 }
 

@@ -1,12 +1,13 @@
 //! The motions near a state, to first order.
 
+use std::io::{self, Seek, Write};
+
 use pc_analysis::{Linearization, Stability, Trim};
 use pc_model::Model;
 use pc_print::stability_in_words;
 use serde_json::{Map, Value, json};
 
 use crate::error::RunError;
-use crate::files::error::FileError;
 use crate::linear::arrays::of_linearization;
 use crate::linear::linearizable::{Linearizable, placed};
 use crate::linear::near::{CyclicChoice, near};
@@ -17,7 +18,8 @@ use crate::linear::{compared, json, text};
 use crate::observer::Observer;
 use crate::table::array::Array;
 use crate::table::csv::field;
-use crate::table::file::TableFile;
+use crate::table::format::Format;
+use crate::table::tabulated::Tabulated;
 
 /// A linearization of a model, with the stability of its state.
 #[derive(Debug)]
@@ -124,19 +126,22 @@ impl Linearized {
     pub fn csv(&self) -> String {
         csv(&self.linear)
     }
+}
 
-    /// Writes the linearization to a file.
-    ///
-    /// # Errors
-    /// [`FileError::Write`], which says where the result was kept.
-    pub fn write(&self, file: &TableFile) -> Result<(), FileError> {
+impl Tabulated for Linearized {
+    fn formats(&self) -> &'static [Format] {
+        Format::OF_ARRAYS
+    }
+
+    fn write_as(&self, format: Format, out: &mut (impl Write + Seek + Send)) -> io::Result<()> {
         let contents = Contents {
-            json: &self.json(),
-            csv: &self.csv(),
-            arrays: &of_linearization(&self.linear),
+            text: &|| self.text(),
+            json: &|| self.json(),
+            csv: &|| self.csv(),
+            arrays: &|| of_linearization(&self.linear),
             texts: &names(&self.linear),
         };
-        contents.write(file)
+        contents.write_as(format, out)
     }
 }
 

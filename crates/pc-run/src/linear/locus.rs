@@ -1,5 +1,7 @@
 //! The eigenvalues as functions of a parameter, as text and tables.
 
+use std::io::{self, Seek, Write};
+
 use pc_analysis::{Eigenvalue, Mode, RootLocus};
 use pc_model::Model;
 use pc_print::short;
@@ -8,7 +10,6 @@ use serde_json::{Value, json};
 
 use crate::category::Category;
 use crate::error::RunError;
-use crate::files::error::FileError;
 use crate::linear::arrays::of_locus;
 use crate::linear::error::LinearError;
 use crate::linear::linearizable::Linearizable;
@@ -20,7 +21,8 @@ use crate::linear::text::{aligned, complex};
 use crate::observer::Observer;
 use crate::sweep::values::Vary;
 use crate::table::csv::field;
-use crate::table::file::TableFile;
+use crate::table::format::Format;
+use crate::table::tabulated::Tabulated;
 
 /// A root locus, with its model and parameter.
 #[derive(Debug)]
@@ -177,19 +179,22 @@ impl Locus {
         let large = sized.into_iter().filter(|(size, _)| *size >= LARGE);
         large.take(MOST_NAMED).map(|(_, name)| name.clone()).collect()
     }
+}
 
-    /// Writes the locus to a file.
-    ///
-    /// # Errors
-    /// [`FileError::Write`], which says where the result was kept.
-    pub fn write(&self, file: &TableFile) -> Result<(), FileError> {
+impl Tabulated for Locus {
+    fn formats(&self) -> &'static [Format] {
+        Format::OF_ARRAYS
+    }
+
+    fn write_as(&self, format: Format, out: &mut (impl Write + Seek + Send)) -> io::Result<()> {
         let contents = Contents {
-            json: &self.json(),
-            csv: &self.csv(),
-            arrays: &of_locus(&self.locus),
+            text: &|| self.text(),
+            json: &|| self.json(),
+            csv: &|| self.csv(),
+            arrays: &|| of_locus(&self.locus),
             texts: &[("parameter", self.name.clone()), ("components", self.components.join(","))],
         };
-        contents.write(file)
+        contents.write_as(format, out)
     }
 }
 

@@ -1,35 +1,36 @@
-//! Linearizations and equilibria as files.
+//! Linearizations, loci and equilibria in every format that they have.
 
-use std::io::Write;
+use std::io::{self, Seek, Write};
 
+use pc_print::{visible, visible_json};
 use serde_json::Value;
 
-use crate::files::error::FileError;
 use crate::table::array::Array;
-use crate::table::file::{Format, TableFile};
+use crate::table::format::Format;
 use crate::table::{mat, npz};
 
-/// A result that can be written in every format.
+/// What there is to be written, as each format needs it.
 pub(crate) struct Contents<'a> {
-    pub(crate) json: &'a Value,
-    pub(crate) csv: &'a str,
-    pub(crate) arrays: &'a [Array],
+    pub(crate) text: &'a dyn Fn() -> String,
+    pub(crate) json: &'a dyn Fn() -> Value,
+    pub(crate) csv: &'a dyn Fn() -> String,
+    pub(crate) arrays: &'a dyn Fn() -> Vec<Array>,
     /// The names of the rows and columns of the arrays, as lists separated by commas.
     pub(crate) texts: &'a [(&'a str, String)],
 }
 
 impl Contents<'_> {
-    /// Writes the result.
+    /// Writes it in a format.
     ///
     /// # Errors
-    /// [`FileError::Write`], which says where the result was kept; an existing file is then
-    /// unchanged.
-    pub(crate) fn write(&self, file: &TableFile) -> Result<(), FileError> {
-        file.place.write_or_keep(file.format == Format::Csv, |out| match file.format {
-            Format::Json => writeln!(out, "{:#}", self.json),
-            Format::Npz => npz::write_arrays(self.arrays, out),
-            Format::Mat => mat::write(self.arrays, self.texts, out),
-            _ => out.write_all(self.csv.as_bytes()),
-        })
+    /// [`io::Error`]
+    pub(crate) fn write_as(&self, format: Format, out: &mut (impl Write + Seek)) -> io::Result<()> {
+        match format {
+            Format::Text => write!(out, "{}", visible(&(self.text)())),
+            Format::Json => writeln!(out, "{}", visible_json(&(self.json)())),
+            Format::Npz => npz::write_arrays(&(self.arrays)(), out),
+            Format::Mat => mat::write(&(self.arrays)(), self.texts, out),
+            _ => out.write_all((self.csv)().as_bytes()),
+        }
     }
 }

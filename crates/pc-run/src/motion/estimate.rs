@@ -59,7 +59,7 @@ impl Estimate {
         table: &mut Table,
     ) -> Estimate {
         let columns = 1..table.derivatives().start;
-        let names = table.columns()[columns.clone()].iter().map(|name| format!("error({name})")).collect();
+        let names = table.columns()[columns.clone()].iter().map(|name| column_of_errors(name)).collect();
         let beside: Vec<(f64, &[f64])> = estimate.beside().iter().take(estimate.len()).collect();
         let row = |i: usize, row: &[f64]| -> Vec<f64> {
             match beside.get(i) {
@@ -83,6 +83,11 @@ impl Estimate {
             incomplete: (estimate.len() < table.len()).then(|| why(estimate, flow)),
         }
     }
+}
+
+/// The name of the column with the errors of a column.
+pub(crate) fn column_of_errors(name: &str) -> String {
+    format!("error({name})")
 }
 
 /// Why a companion did not reach the end of the motion.

@@ -12,7 +12,7 @@ use crate::motion::accuracy::Accuracy;
 use crate::motion::cache::{Cache, Kept};
 use crate::motion::checkpoints::{CheckpointFiles, Checkpoints};
 use crate::motion::derived::{Derived, Facts};
-use crate::motion::estimate::{self, Estimate};
+use crate::motion::estimate::{self, Estimate, column_of_errors};
 use crate::motion::fine;
 use crate::motion::lost::LostIntegral;
 use crate::motion::lost_inertia::lost_inertia;
@@ -29,6 +29,7 @@ use crate::plan::Plan;
 use crate::plan::Wishes;
 use crate::plan::memory;
 use crate::plan::tolerances::{Tolerances, note_largest};
+use crate::table::chosen::chosen;
 
 /// What a run contains in addition to its rows; nothing by default.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -40,6 +41,8 @@ pub struct Besides {
     pub fine: bool,
     /// Whether the observer is given remarks on the equations.
     pub remarks: bool,
+    /// The columns that are written besides t, in this order; all if there are none.
+    pub columns: Vec<String>,
     /// Whether the table contains the errors of its columns.
     pub estimate: bool,
     /// Whether the run contains what is known of the accuracy of its rows.
@@ -218,6 +221,7 @@ impl Integration<'_, '_> {
                 Some(self.assembled(derivatives)??)
             }
         };
+        let written = self.written(derivatives.as_ref())?;
         let verified = self.assembly.filter(|_| self.besides.verify);
         let mut verification = match verified {
             Some(assembly) => {
@@ -233,7 +237,8 @@ impl Integration<'_, '_> {
         let mut again = (self.besides.fine && self.is_plain()).then(|| self.flow.clone());
         let mut beside = self.besides.has_companion().then(|| self.flow.clone());
         let observer = self.observer;
-        let mut streamed = stream.map(|stream| Streamed::new(&self.flow, stream, observer)).transpose()?;
+        let mut streamed =
+            stream.map(|stream| Streamed::new(&self.flow, (stream, &written), observer)).transpose()?;
 
         let solved = self.solve(&options, (&mut checkpoints, &mut derivatives, &mut streamed))?;
 
@@ -289,6 +294,7 @@ impl Integration<'_, '_> {
             never_exceeded: tolerances.never_exceeded(&written_start(model), &largest),
             tolerances,
             table,
+            written,
             trajectory,
             estimate,
             accuracy,
@@ -321,6 +327,23 @@ impl Integration<'_, '_> {
                 Ok(work(&self.model.assemble(&graph)?))
             }
         }
+    }
+
+    /// The numbers of the columns that are written, as they will be; a drift is drawn alone.
+    fn written(&self, derivatives: Option<&Derivatives>) -> Result<Vec<usize>, RunError> {
+        let Integration { flow, besides, .. } = self;
+        let mut names = Table::of(flow).columns().to_vec();
+        let errors: Vec<String> = if besides.estimate {
+            names[1..].iter().map(|name| column_of_errors(name)).collect()
+        } else {
+            Vec::new()
+        };
+        names.extend(derivatives.map_or_else(Vec::new, |derivatives| derivatives.columns(flow)));
+        names.extend(errors);
+        let is_drawn =
+            |name: &str| besides.fine && name.starts_with("drift(") && !names.iter().any(|n| n == name);
+        let wanted = besides.columns.iter().filter(|name| !is_drawn(name.trim())).cloned();
+        Ok(chosen(&names, |j| j == 0, &wanted.collect::<Vec<_>>())?)
     }
 
     /// Whether the motion is integrated without derivatives and checkpoints.

@@ -1,18 +1,19 @@
-//! Writes the table of a run to a file.
+//! Writes the table of a run.
 
-use std::io::{self, Write};
+use std::io::{self, Seek, Write};
 
 use pc_solve::Occurrence;
 use serde_json::{Map, Value, json};
 
-use crate::files::error::FileError;
 use crate::motion::run::Run;
 use crate::motion::summary;
 use crate::motion::table::Table;
-use crate::table::file::{Format, TableFile};
+use crate::table::chosen::Chosen;
+use crate::table::format::Format;
 #[cfg(feature = "parquet")]
 use crate::table::parquet;
 use crate::table::rows::{Cell, CellKind, Column, Rows, Take};
+use crate::table::tabulated::Tabulated;
 use crate::table::{csv, json, npz};
 
 impl Rows for Table {
@@ -38,31 +39,26 @@ impl Rows for Table {
     }
 }
 
-impl Run {
+impl Tabulated for Run {
+    fn formats(&self) -> &'static [Format] {
+        Format::OF_TABLES
+    }
+
     /// Writes the table, with parameters, events and summary if the format can hold them.
-    ///
-    /// # Errors
-    /// [`FileError::Write`], which says where the table was kept; an existing file is then
-    /// unchanged.
-    pub fn write(&self, file: &TableFile) -> Result<(), FileError> {
-        file.place.write_or_keep(file.format == Format::Csv, |out| match file.format {
-            Format::Json => self.write_json(out),
-            Format::Npz => npz::write(&self.table, &self.times_of_events(), out),
+    fn write_as(&self, format: Format, out: &mut (impl Write + Seek + Send)) -> io::Result<()> {
+        let table = Chosen { table: &self.table, places: &self.written };
+        match format {
+            Format::Json => self.write_json(&table, out),
+            Format::Npz => npz::write(&table, &self.times_of_events(), out),
             #[cfg(feature = "parquet")]
-            Format::Parquet => parquet::write("motion", &self.table, &self.said_of_columns(), out),
-            Format::Csv | Format::Mat => self.write_csv(out),
-        })
+            Format::Parquet => parquet::write("motion", &table, &self.said_of_columns(), out),
+            Format::Text | Format::Csv | Format::Mat => csv::write(&table, out),
+        }
     }
+}
 
-    /// Writes the table as comma-separated values.
-    ///
-    /// # Errors
-    /// [`io::Error`]
-    pub fn write_csv(&self, out: &mut dyn Write) -> io::Result<()> {
-        csv::write(&self.table, out)
-    }
-
-    fn write_json(&self, out: &mut dyn Write) -> io::Result<()> {
+impl Run {
+    fn write_json(&self, table: &dyn Rows, out: &mut dyn Write) -> io::Result<()> {
         let parameters: Map<String, Value> =
             self.parameters.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
         let mut before = vec![("model", json!(self.title)), ("parameters", Value::from(parameters))];
@@ -72,12 +68,13 @@ impl Run {
             .then(|| ("events", self.occurrences.iter().map(occurred).collect::<Value>()));
         let after: Vec<(&str, Value)> =
             events.into_iter().chain([("summary", summary::json(self))]).collect();
-        json::write(&before, &self.table, &after, out)
+        json::write(&before, table, &after, out)
     }
 
     /// The units of the columns that have one, by their names; none if no column has.
     fn units(&self) -> Option<Value> {
-        let is_column = |name: &&(String, String)| Table::columns(&self.table).contains(&name.0);
+        let columns = Table::columns(&self.table);
+        let is_column = |name: &&(String, String)| self.written.iter().any(|&j| columns[j] == name.0);
         let units: Map<String, Value> =
             self.units.iter().filter(is_column).map(|(name, unit)| (name.clone(), json!(unit))).collect();
         (!units.is_empty()).then_some(Value::from(units))

@@ -32,6 +32,8 @@ pub struct Run {
     pub never_exceeded: Vec<String>,
     /// The table, as far as the motion was integrated.
     pub table: Table,
+    /// The numbers of its columns that are written, in order.
+    pub written: Vec<usize>,
     /// The states of the rows; none if these were written as they were computed.
     pub trajectory: Trajectory,
     /// The motion between its rows too, with as many points as pictures need, if that was requested.

@@ -17,6 +17,8 @@ pub(crate) struct Streamed<'s, 'p> {
     /// A second flow, with which rows are computed, since the integration uses the first.
     flow: Flow,
     stream: &'s mut Stream<'p>,
+    /// The numbers of the columns that are written.
+    written: &'s [usize],
     observer: &'s dyn Observer,
     /// The last row, and the drifts so far.
     pub(crate) table: Table,
@@ -33,15 +35,16 @@ impl<'s, 'p> Streamed<'s, 'p> {
     /// [`FileError::Write`]
     pub(crate) fn new(
         flow: &Flow,
-        stream: &'s mut Stream<'p>,
+        (stream, written): (&'s mut Stream<'p>, &'s [usize]),
         observer: &'s dyn Observer,
     ) -> Result<Streamed<'s, 'p>, FileError> {
         let table = Table::streamed(flow);
-        stream.begin(table.columns())?;
+        stream.begin(written.iter().map(|&j| &table.columns()[j]))?;
         let constraints = flow.constraint_names().into_iter().map(|name| (name, 0.0)).collect();
         Ok(Streamed {
             flow: flow.clone(),
             stream,
+            written,
             observer,
             table,
             constraints,
@@ -77,7 +80,7 @@ impl<'s, 'p> Streamed<'s, 'p> {
         note_largest(&mut self.largest, y);
         self.last = Some((t, y.to_vec()));
         match self.table.rows().next_back() {
-            Some(row) => self.stream.row(row),
+            Some(row) => self.stream.row(self.written.iter().map(|&j| row[j])),
             None => ControlFlow::Continue(()),
         }
     }

@@ -3,6 +3,7 @@
 
 use std::io;
 
+use pc_report::UnknownColumn;
 use pc_report::picture::{Band, Content, Curve, Fan, Panel, Picture, Scale, by_scale};
 
 use super::of::SweepOf;
@@ -56,9 +57,9 @@ fn chosen(sweep_columns: &SweepColumns, wanted: &[String]) -> Result<Vec<usize>,
         return Ok((0..names.len()).filter(is_shown).collect());
     }
     let place = |name: &String| {
-        names.iter().position(|known| *known == name.trim()).ok_or_else(|| SweepPlotError::UnknownColumn {
-            name: name.clone(),
-            known: names.iter().map(ToString::to_string).collect(),
+        names.iter().position(|known| *known == name.trim()).ok_or_else(|| {
+            let known = names.iter().map(ToString::to_string).collect();
+            SweepPlotError::UnknownColumn(UnknownColumn { name: name.trim().to_owned(), known })
         })
     };
     wanted.iter().map(place).collect()

@@ -1,5 +1,7 @@
 //! Why a sweep cannot be drawn.
 
+use pc_report::UnknownColumn;
+
 /// The largest number of cells in a panel: a picture has no more points than this.
 pub(super) const MOST_CELLS: u64 = 250_000;
 
@@ -23,11 +25,6 @@ pub enum SweepPlotError {
         members: u64,
     },
     /// A column that does not exist.
-    #[error("there is no column `{name}`; the columns are {}", known.join(", "))]
-    UnknownColumn {
-        /// The requested name.
-        name: String,
-        /// The existing columns.
-        known: Vec<String>,
-    },
+    #[error(transparent)]
+    UnknownColumn(#[from] UnknownColumn),
 }

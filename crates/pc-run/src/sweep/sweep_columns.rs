@@ -92,6 +92,12 @@ impl SweepColumns {
         self.columns[1..=self.varied].iter().map(|column| column.name.as_str())
     }
 
+    /// Whether column number `j` tells rows apart: the member, what is varied, and the time of a row.
+    pub(crate) fn tells_rows_apart(&self, j: usize) -> bool {
+        let is_time = self.of == SweepOf::Run && j == self.varied + 2;
+        j <= self.varied || is_time
+    }
+
     /// The columns of results.
     fn results(&self) -> &[Column] {
         let from = self.varied + 2;

@@ -113,6 +113,7 @@ impl Sweep {
         }
         let (title, deadline) = (model.title().to_owned(), model.budget().deadline().clone());
         let units = units(&model);
+        let observes = model.observes_reactions();
         let (work, depends_on) = begun(wishes, model, design, observer)?;
         let sweep_columns = SweepColumns::new(wishes.of, &names, work.members().columns());
         Ok(Sweep {
@@ -125,7 +126,7 @@ impl Sweep {
             members,
             is_random: variation.members.is_some(),
             counts: variation.vary.iter().map(|vary| vary.values.count()).collect(),
-            header: header(depends_on, variation, wishes),
+            header: header(depends_on, variation, wishes, observes),
         })
     }
 
@@ -228,6 +229,14 @@ impl Sweep {
     /// [`SweepError::Drawn`]
     pub fn drawable(&self, columns: &[String]) -> Result<(), SweepError> {
         picture::check(&self.sweep_columns, columns, &self.counts, self.is_random).map_err(SweepError::Drawn)
+    }
+
+    /// The numbers of the columns that are written where some are wanted.
+    ///
+    /// # Errors
+    /// [`RunError::Column`]
+    pub fn written(&self, wanted: &[String]) -> Result<Vec<usize>, RunError> {
+        Ok(self.sweep_columns.written(wanted)?)
     }
 
     /// The journal beside the table with this path: a new one, or the one that the same sweep, or the same
@@ -357,7 +366,7 @@ fn look(model: &Model, observer: &dyn Observer) -> Result<(), RunError> {
 }
 
 /// Everything on which the result depends.
-fn header(depends_on: Identity, variation: &Variation, wishes: &SweepWishes) -> Identity {
+fn header(depends_on: Identity, variation: &Variation, wishes: &SweepWishes, observes: bool) -> Identity {
     let list = |items: &mut dyn Iterator<Item = String>| items.collect::<Vec<_>>().join(" ");
     let number = |number: Option<String>| number.unwrap_or_else(|| "none".to_owned());
     let entries = [
@@ -365,6 +374,7 @@ fn header(depends_on: Identity, variation: &Variation, wishes: &SweepWishes) -> 
         ("--random", list(&mut variation.random.iter().map(ToString::to_string))),
         ("--members", number(variation.members.map(|members| members.to_string()))),
         ("--seed", variation.seed.to_string()),
+        ("--outputs", if observes { "reactions" } else { "none" }.to_owned()),
         ("--rows", number(wishes.run.samples.map(|rows| rows.to_string()))),
     ];
     let mut header = depends_on;

@@ -1,65 +1,11 @@
-//! The file of a table, in the format given by its name.
+//! The file of a table.
 
 use std::path::Path;
 
 use crate::files::error::FileError;
 use crate::files::stream::Stream;
 use crate::files::target::Target;
-
-/// The format of a table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// Comma-separated values, 17 significant digits.
-    Csv,
-    /// One JSON object.
-    Json,
-    /// NumPy's archive.
-    Npz,
-    /// A MAT-file.
-    Mat,
-    /// Apache Parquet.
-    #[cfg(feature = "parquet")]
-    Parquet,
-}
-
-impl Format {
-    /// The formats of tables of numbers and text.
-    pub const OF_TABLES: &'static [Format] = &[
-        Format::Csv,
-        Format::Json,
-        Format::Npz,
-        #[cfg(feature = "parquet")]
-        Format::Parquet,
-    ];
-    /// The formats of arrays.
-    pub const OF_ARRAYS: &'static [Format] = &[Format::Json, Format::Csv, Format::Npz, Format::Mat];
-    /// The formats of lists.
-    pub const OF_LISTS: &'static [Format] = &[Format::Json, Format::Csv];
-
-    /// The extension of file names in this format.
-    pub fn extension(self) -> &'static str {
-        match self {
-            Format::Csv => "csv",
-            Format::Json => "json",
-            Format::Npz => "npz",
-            Format::Mat => "mat",
-            #[cfg(feature = "parquet")]
-            Format::Parquet => "parquet",
-        }
-    }
-
-    /// A phrase that lists the extensions of some formats.
-    fn expected(formats: &[Format]) -> String {
-        let endings: Vec<String> = formats.iter().map(|format| format!(".{}", format.extension())).collect();
-        let listed = match endings.split_last() {
-            Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
-            _ => endings.concat(),
-        };
-        let is_missing = cfg!(not(feature = "parquet")) && formats == Format::OF_TABLES;
-        let feature = " (.parquet where pc is built with its feature `parquet`)";
-        if is_missing { listed + feature } else { listed }
-    }
-}
+use crate::table::format::Format;
 
 /// The file of a table; its place is examined before anything is computed.
 #[derive(Debug)]
@@ -69,23 +15,24 @@ pub struct TableFile {
 }
 
 impl TableFile {
-    /// A file in one of these formats, or a device for formats that are written from beginning to end.
+    /// A file in the format that is asked for, or else given by its name, among these; or a device for formats that are
+    /// written from beginning to end.
     ///
     /// # Errors
-    /// [`FileError::UnknownExtension`]; [`FileError::Place`] if the file cannot be written.
-    pub fn new(path: &Path, formats: &[Format]) -> Result<TableFile, FileError> {
-        let format = format(path, formats)?;
+    /// Those of [`Format::of`]; [`FileError::Place`] if the file cannot be written.
+    pub fn new(path: &Path, asked: Option<Format>, formats: &[Format]) -> Result<TableFile, FileError> {
+        let format = Format::of(Some(path), asked, formats)?;
         // Writing the archive needs to seek.
         let place = if format == Format::Npz { Target::regular(path) } else { Target::new(path) };
         Ok(TableFile { place: place.map_err(|source| FileError::no_place(path, source))?, format })
     }
 
-    /// A regular file in one of these formats.
+    /// A regular file in the format that is asked for, or else given by its name, among these.
     ///
     /// # Errors
     /// As for [`new`](TableFile::new).
-    pub fn regular(path: &Path, formats: &[Format]) -> Result<TableFile, FileError> {
-        let format = format(path, formats)?;
+    pub fn regular(path: &Path, asked: Option<Format>, formats: &[Format]) -> Result<TableFile, FileError> {
+        let format = Format::of(Some(path), asked, formats)?;
         let place = Target::regular(path).map_err(|source| FileError::no_place(path, source))?;
         Ok(TableFile { place, format })
     }
@@ -118,14 +65,4 @@ impl TableFile {
     pub fn instead_of(&self) -> Option<&Path> {
         self.place.instead_of()
     }
-}
-
-fn format(path: &Path, formats: &[Format]) -> Result<Format, FileError> {
-    let extension = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
-    let format = formats.iter().find(|format| extension.as_deref() == Some(format.extension()));
-    format.copied().ok_or_else(|| FileError::UnknownExtension {
-        option: "-o",
-        path: path.to_owned(),
-        expected: Format::expected(formats),
-    })
 }
