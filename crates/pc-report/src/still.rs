@@ -10,3 +10,4 @@ mod ground;
 mod shadows;
 mod shapes;
 pub(crate) mod still;
+mod vectors;

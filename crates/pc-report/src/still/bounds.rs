@@ -1,7 +1,7 @@
 //! The size of the model and of its path, and where it is in each still.
 
 use crate::scene::{Scene, SceneShape};
-use crate::still::camera::{length, vector};
+use crate::still::vectors::{length, vector};
 
 /// The length, relative to the size of the scene, that counts as zero.
 pub(super) const NOTHING: f64 = 1e-6;

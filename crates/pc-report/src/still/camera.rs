@@ -39,15 +39,6 @@ pub(super) struct Camera {
     pub(super) paper: [f64; 2],
 }
 
-/// The vector of the three numbers from index `i` on.
-pub(super) fn vector(numbers: &[f32], i: usize) -> [f64; 3] {
-    [numbers[i], numbers[i + 1], numbers[i + 2]].map(f64::from)
-}
-
-pub(super) fn length(a: [f64; 3]) -> f64 {
-    a.iter().map(|x| x * x).sum::<f64>().sqrt()
-}
-
 impl Camera {
     /// The view in which the player opens, at a still: of the whole path, or of the model where the path is much longer.
     ///

@@ -3,8 +3,8 @@
 use crate::mesh::Mesh;
 use crate::picture::{Drawing, Ink};
 use crate::scene::SceneShape;
-use crate::still::camera::{Camera, vector};
-use crate::still::shapes::{corners_of_box, rim, turned};
+use crate::still::camera::Camera;
+use crate::still::vectors::{corners_of_box, rim, turned, vector};
 
 /// How far a shadow moves to the right and away for each unit of height.
 const SLANT: [f64; 2] = [0.18, 0.12];

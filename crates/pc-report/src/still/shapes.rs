@@ -5,14 +5,13 @@ use std::f64::consts::TAU;
 use crate::mesh::Mesh;
 use crate::picture::{Anchor, Drawing, Ink};
 use crate::scene::SceneShape;
-use crate::still::camera::{Camera, Seen, length, vector};
+use crate::still::camera::{Camera, Seen};
+use crate::still::vectors::{CORNERS, corners_of_box, cross, rim, turned, unit, vector};
 
 /// The radius of a point.
 const DOT: f64 = 5.5;
 /// The height of letters.
 const LETTERS: f64 = 12.0;
-/// The number of corners with which a circle is drawn.
-const CORNERS: usize = 48;
 /// The number of segments with which a spring is drawn, and the width of its windings to either side.
 const WINDINGS: usize = 22;
 const WINDING: f64 = 8.0;
@@ -178,43 +177,6 @@ fn circle(middle: Seen, radius: f64) -> Vec<[f64; 2]> {
         [middle.at[0] + radius * cos, middle.at[1] + radius * sin]
     };
     (0..CORNERS).map(corner).collect()
-}
-
-/// The corners of a box; the bits of each index select the ends of its edges.
-pub(super) fn corners_of_box(numbers: &[f32]) -> [[f64; 3]; 8] {
-    let (at, edges) = (vector(numbers, 0), vector(numbers, 3));
-    std::array::from_fn(|bits| {
-        let end = |k: usize| ((bits >> k & 1) as f64 - 0.5) * edges[k];
-        turned(at, &numbers[6..], [end(0), end(1), end(2)])
-    })
-}
-
-/// The points of the rim of a disc perpendicular to a normal.
-pub(super) fn rim(middle: [f64; 3], normal: [f64; 3], radius: f64) -> impl Iterator<Item = [f64; 3]> {
-    let n = unit(normal);
-    let a = unit(cross(n, if n[0].abs() > 0.9 { [0.0, 1.0, 0.0] } else { [1.0, 0.0, 0.0] }));
-    let b = cross(n, a);
-    (0..CORNERS).map(move |i| {
-        let (sin, cos) = (TAU * i as f64 / CORNERS as f64).sin_cos();
-        [0, 1, 2].map(|k| middle[k] + radius * (cos * a[k] + sin * b[k]))
-    })
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn unit(a: [f64; 3]) -> [f64; 3] {
-    let length = length(a);
-    a.map(|x| if length > 0.0 { x / length } else { 0.0 })
-}
-
-/// The point `at` + R v, with R given row by row.
-pub(super) fn turned(at: [f64; 3], rotation: &[f32], v: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|k| {
-        let row = vector(rotation, 3 * k);
-        at[k] + row[0] * v[0] + row[1] * v[1] + row[2] * v[2]
-    })
 }
 
 /// The points of a zigzag line between two points in space.

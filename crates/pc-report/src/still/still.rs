@@ -2,7 +2,8 @@
 
 use crate::picture::{Anchor, Drawing, Ink};
 use crate::scene::{Scene, SceneShape};
-use crate::still::camera::{Camera, vector};
+use crate::still::camera::Camera;
+use crate::still::vectors::vector;
 use crate::still::{ground, shadows, shapes};
 
 /// The height of the letters of the title and the clock.
