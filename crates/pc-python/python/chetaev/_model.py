@@ -99,7 +99,7 @@ class Model:
     ) -> Model:
         """The model of a robot in URDF with macros expanded, in MJCF or in SDF.
 
-        Links become bodies on joints.
+        Links become bodies on joints, and meshes of URDF whose files are there are drawn.
 
         Warnings name what was left out. The text of the model can be written to a file and edited
         further.
