@@ -91,7 +91,8 @@ impl Mesh {
     /// The surface with one corner, the mean, for all that have the same `key`; without triangles that have become lines, or have
     /// become one.
     fn joined<K: std::hash::Hash + Eq>(&self, key: impl Fn([f32; 3]) -> K) -> Mesh {
-        let (mut known, mut sums): (HashMap<K, u32>, Vec<([f64; 3], f64)>) = Default::default();
+        let mut known: HashMap<K, u32> = HashMap::new();
+        let mut sums: Vec<([f64; 3], f64)> = Vec::new();
         let mut of_corner = Vec::with_capacity(self.corners.len());
         for &corner in &self.corners {
             let place = *known.entry(key(corner)).or_insert_with(|| {

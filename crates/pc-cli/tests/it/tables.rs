@@ -79,11 +79,11 @@ fn ending(format: &str) -> &str {
 }
 
 /// A motion says how long it took.
-fn without_time(format: &str, bytes: Vec<u8>) -> Value {
+fn without_time(format: &str, bytes: &[u8]) -> Value {
     if format != "json" {
-        return Value::from(String::from_utf8_lossy(&bytes).into_owned());
+        return Value::from(String::from_utf8_lossy(bytes).into_owned());
     }
-    let mut all: Value = serde_json::from_slice(&bytes).expect("JSON");
+    let mut all: Value = serde_json::from_slice(bytes).expect("JSON");
     if let Some(summary) = all.get_mut("summary").and_then(Value::as_object_mut) {
         summary.retain(|_, value| !value.is_number());
     }
@@ -98,16 +98,16 @@ fn a_format_is_the_same_everywhere() {
         for format in
             formats.iter().copied().filter(|format| cfg!(feature = "parquet") || *format != "parquet")
         {
-            let same = |bytes| without_time(format, bytes);
+            let same = |bytes: Vec<u8>| without_time(format, &bytes);
             let printed = same(place.answer(&[command, &["--format", format]].concat()));
             let named = same(place.file(&format!("a.{}", ending(format)), command));
             let asked = same(place.file("b.csv", &[command, &["--format", format]].concat()));
             assert!(printed == named, "{command:?} {format}: as the ending says");
             assert!(printed == asked, "{command:?} {format}: whatever the ending");
         }
-        let usual = without_time(formats[0], place.answer(command));
+        let usual = without_time(formats[0], &place.answer(command));
         assert!(
-            usual == without_time(formats[0], place.answer(&[command, &["--format", formats[0]]].concat()))
+            usual == without_time(formats[0], &place.answer(&[command, &["--format", formats[0]]].concat()))
         );
     }
     let sweep = ["sweep", "m.toml", "--vary", "k=1:2:3"];

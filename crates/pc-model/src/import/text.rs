@@ -370,7 +370,7 @@ impl<'a> Tree<'a> {
         }
         match joint {
             None => {
-                line(format!("joint = {{ kind = \"{}\" }}", if options.floating { "free" } else { "fixed" }))
+                line(format!("joint = {{ kind = \"{}\" }}", if options.floating { "free" } else { "fixed" }));
             }
             Some(joint) => {
                 joint.remarks.iter().for_each(|remark| line(format!("# {}", one_line(remark))));

@@ -55,10 +55,10 @@ impl Bounds {
     /// The box of all stills.
     pub(super) fn of_all(scene: &Scene) -> Bounds {
         let stills = scene.stills.chunks_exact(scene.width().max(1));
-        stills.map(|numbers| Bounds::of(scene, numbers)).fold(Bounds::default(), Bounds::with)
+        stills.fold(Bounds::default(), |all, numbers| all.with(&Bounds::of(scene, numbers)))
     }
 
-    fn with(mut self, other: Bounds) -> Bounds {
+    fn with(mut self, other: &Bounds) -> Bounds {
         for k in 0..3 {
             self.low[k] = self.low[k].min(other.low[k]);
             self.high[k] = self.high[k].max(other.high[k]);
