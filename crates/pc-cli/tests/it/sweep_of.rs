@@ -148,6 +148,13 @@ fn members_without_a_steady_state_say_so() {
     assert_eq!((table.column("stability")[3], table.column("re1")[3]), (&Value::from(""), &Value::Null));
     let message = table.column("message")[3].as_str().expect("words");
     assert!(message.starts_with("no steady state was found near the start"), "{message}");
+    // The picture is the root locus of those that have one.
+    let drawn = [&["sweep", "model.toml", "-o", "d.json", "--plot", "d.svg"], &options[..]].concat();
+    place.ends(&drawn, 0, &[]);
+    let svg = fs::read_to_string(place.at("d.svg")).expect("a picture");
+    for said in ["Eigenvalues in the complex plane", "pull from 0 (crosses) to 1 (circles)"] {
+        assert!(svg.contains(said), "{said}: {svg}");
+    }
     let none = ["sweep", "model.toml", "--of", "linearize", "--vary", "pull=2:3:2", "-o", "b.json"];
     place.ends(&none, 5, &["none of the 2 members was completed; the first: no steady state was found"]);
     // At the start itself nothing has to be steady.

@@ -19,7 +19,7 @@ pub enum Axes {
 
 /// The branches in the complex plane, and their parts against the quantity `name`. `present` is its present value, `modes` the
 /// names of each branch's largest components.
-pub(super) fn picture(
+pub(crate) fn picture(
     (title, name): (&str, &str),
     locus: &RootLocus,
     (present, modes): (Option<f64>, &[Vec<String>]),

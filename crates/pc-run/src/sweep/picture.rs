@@ -1,5 +1,5 @@
-//! The picture of a sweep: curves against one parameter, a coloured cell for each pair of values of two parameters, or
-//! histograms of random members.
+//! The picture of a sweep: curves against one parameter, eigenvalues in the complex plane, a coloured cell for each pair of
+//! values of two parameters, or histograms of random members.
 
 use std::io;
 
@@ -7,6 +7,8 @@ use pc_report::UnknownColumn;
 use pc_report::picture::{Band, Content, Curve, Fan, Panel, Picture, Scale, by_scale};
 
 use super::of::SweepOf;
+use crate::linear::locus_picture::{self, Axes};
+use crate::sweep::eigenvalues::locus;
 use crate::sweep::error::SweepError;
 use crate::sweep::journal::Records;
 use crate::sweep::picture_error::{MOST_CELLS, SweepPlotError};
@@ -147,12 +149,20 @@ fn drawn(
         ));
     }
     let over_time = finished.iter().any(|member| member.rows.len() > 1);
+    let varied: Vec<&str> = sweep_columns.varied().collect();
+    let moving: Vec<usize> = (0..varied.len()).filter(|&j| values(&finished, j).len() > 1).collect();
+    if let (SweepOf::Linearize, [], &[j], false) = (sweep_columns.of(), wanted, &moving[..], is_random) {
+        let rows = finished.iter().filter_map(|member| Some((member.values[j], &member.rows.last()?[1..])));
+        if let Some(locus) = locus(rows.collect()) {
+            let picture = locus_picture::picture((title, varied[j]), &locus, (None, &[]), Axes::default());
+            remarks.extend(picture.remarks);
+            return Ok(Ok(Picture { remarks, ..picture }));
+        }
+    }
     if wanted.is_empty() {
         places = interesting(&mut finished, &places, &mut remarks);
     }
     let names: Vec<String> = places.iter().map(|&j| sweep_columns.numbers()[j].to_owned()).collect();
-    let varied: Vec<&str> = sweep_columns.varied().collect();
-    let moving: Vec<usize> = (0..varied.len()).filter(|&j| values(&finished, j).len() > 1).collect();
     let of = sweep_columns.of();
     let panels = match (is_random, over_time, &moving[..]) {
         (true, false, _) => {
