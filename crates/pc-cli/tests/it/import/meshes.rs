@@ -4,6 +4,8 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use serde_json::{Value, json};
+
 /// A pendulum whose mesh is in a package, with a ball without a file at its end.
 const ROBOT: &str = r#"<robot name="pendulum">
   <link name="base"/>
@@ -59,14 +61,19 @@ fn meshes_that_are_there_are_drawn() {
 
     done(here, &["animate", "models/swing.toml", "--set", "pivot=1", "--t-end", "2", "-o", "swing.html"]);
     let page = fs::read_to_string(here.join("swing.html")).unwrap();
-    assert!(page.contains("[\"mesh\",12,\"0\"]") && page.contains("\"faces\":\""));
+    let (_, data) = page.split_once("id=\"player-data\">").unwrap();
+    let data: Value = serde_json::from_str(data.split_once("</script>").unwrap().0).unwrap();
+    assert!(data["shapes"].as_array().unwrap().contains(&json!(["mesh", 12, "0"])), "{data}");
+    // Three numbers for each of eight triangles, of four bytes each, in base 64.
+    assert_eq!(data["meshes"][0]["faces"].as_str().unwrap().len(), 8 * 3 * 4 / 3 * 4);
     for still in ["swing.svg", "swing.png", "swing.gif"] {
         done(here, &["animate", "models/swing.toml", "--set", "pivot=1", "--t-end", "0.1", "-o", still]);
         assert!(fs::metadata(here.join(still)).unwrap().len() > 1000, "{still}");
     }
-    // Each of the eight triangles, filled and with its edge.
+    // Each of the eight triangles, and its shadow.
     let svg = fs::read_to_string(here.join("swing.svg")).unwrap();
-    assert!(svg.matches("<path").count() + svg.matches("<poly").count() >= 16, "{svg}");
+    let paths = svg.split("d=\"M").skip(1).filter_map(|path| path.split_once("Z\""));
+    assert_eq!(paths.filter(|(corners, _)| corners.matches('L').count() == 2).count(), 16, "{svg}");
 
     // Standard output is for the present directory.
     let output = pc(here, &["import", "robots/swing/urdf/swing.urdf"]);
