@@ -232,7 +232,7 @@ fn eigenvalues_are_drawn_over_what_is_varied() {
     let options = ["--of", "linearize", "--set", "θ=0", "--vary", "Ω=0:2:9", "--plot", "a.svg"];
     place.swept("a.csv", &options);
     let picture = fs::read_to_string(place.at("a.svg")).expect("a picture");
-    assert!(picture.contains("Eigenvalues") && picture.contains("re1") && !picture.contains("At the end"));
+    assert!(picture.contains("Eigenvalues") && picture.contains("Re λ") && !picture.contains("At the end"));
     let options = ["--of", "check", "--vary", "Ω=0:2:9", "--plot", "b.svg", "--columns", "stability"];
     let sweep = [&["sweep", "model.toml", "-o", "b.csv"][..], &options].concat();
     place.ends(&sweep, 2, &["there is no column `stability`; the columns are rank, mass_rank,"]);
