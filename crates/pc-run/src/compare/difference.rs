@@ -82,7 +82,7 @@ impl Difference {
     /// The difference between two columns at these times, but for those rows that are left out.
     ///
     /// Values a and b with errors of at most e_a and e_b up to their time are the same where
-    /// |a − b| ≤ allowed + [`SAFETY`]·(e_a + e_b) + rounding. An error that was made once is carried along, even where a
+    /// |a − b| ≤ allowed + 3 (e_a + e_b) + rounding. An error that was made once is carried along, even where a
     /// later row happens to be right.
     pub fn new(
         name: String,
