@@ -6,7 +6,7 @@
 //! without scripts; where scripts run, it plays the motion ([`animation`] is a page with the player alone). A
 //! [`Check`] is the output of `pc check`, which is also part of the page.
 //!
-//! Read `check`, the properties of a model; `record`, the data of a motion, and `scene`, its drawing; then
+//! Read `check`, the properties of a model; `record`, the data of a motion, and `scene`, its drawing, with `surfaces`, each a `mesh` of a file; then
 //! [`picture`], curves and eigenvalues for the page and for separate files, and `page`, which puts everything
 //! under headings. Numbers and formulas come from the lower layers.
 //!
@@ -36,6 +36,7 @@ mod recording;
 mod remarks;
 mod scene;
 mod still;
+mod surfaces;
 
 pub use check::check::Check;
 pub use check::findings::Finding;
